@@ -1,0 +1,55 @@
+# How a module, its tests and the version header are built.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
+# Asserts stay on in every build: a broken invariant has to stop the run, not bend its result.
+set(CMAKE_CXX_FLAGS_RELEASE "-O3")
+
+option(SUNDER_PORTABLE "Build for any x86-64 machine instead of x86-64-v3 (AVX2, FMA)" OFF)
+
+add_library(sunder_flags INTERFACE)
+# Contraction to FMA is off so that the same source gives the same bits at every optimisation level.
+target_compile_options(sunder_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -ffp-contract=off)
+if(NOT SUNDER_PORTABLE AND CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")
+  # For all modules alike: Eigen's alignment follows the instruction set and must agree across libraries.
+  target_compile_options(sunder_flags INTERFACE -march=x86-64-v3)
+endif()
+target_include_directories(sunder_flags INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/generated)
+target_compile_definitions(sunder_flags INTERFACE SUNDER_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+
+find_program(CCACHE ccache)
+if(CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+endif()
+
+# sunder_module(name USES public-dependencies HIDES third-party-inside-cpp-files)
+function(sunder_module name)
+  cmake_parse_arguments(ARG "" "" "USES;HIDES" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${name}/*.cpp ${PROJECT_SOURCE_DIR}/${name}/detail/*.cpp)
+  list(FILTER sources EXCLUDE REGEX "/main\\.cpp$")
+  add_library(sunder_${name} STATIC ${sources})
+  target_link_libraries(sunder_${name} PUBLIC sunder_flags ${ARG_USES} PRIVATE ${ARG_HIDES})
+endfunction()
+
+# sunder_test(name): every tests/<name>/*_test.cpp in one program; extra libraries follow the name.
+function(sunder_test name)
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*_test.cpp)
+  if(NOT sources)
+    return()
+  endif()
+  add_executable(${name}_tests ${sources})
+  target_link_libraries(${name}_tests PRIVATE ${ARGN} GTest::gtest_main rapidcheck rapidcheck_gtest)
+  gtest_discover_tests(${name}_tests TEST_PREFIX ${name}. DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 300)
+endfunction()
+
+# Writes generated/sunder_version.h with the version and, at every build, the git revision with its dirty flag.
+function(sunder_version_header)
+  add_custom_target(sunder_version_header ALL
+    COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -DVERSION=${PROJECT_VERSION}
+            -DOUTPUT=${PROJECT_BINARY_DIR}/generated/sunder_version.h -P ${PROJECT_SOURCE_DIR}/cmake/version.cmake
+    BYPRODUCTS ${PROJECT_BINARY_DIR}/generated/sunder_version.h COMMENT "")
+  add_dependencies(sunder_pipeline sunder_version_header)
+endfunction()

@@ -1,0 +1,1 @@
+#include "crack/extract.h"

@@ -1,0 +1,24 @@
+#pragma once
+/// A solid as a few convex hulls, for collision.
+#include <vector>
+
+#include "geometry/mesh.h"
+
+namespace sunder::geometry {
+
+struct ConvexPartsSettings {
+  int max_parts = 24;
+  double excess = 0.04;          ///< stop when the hulls hold at most this share more volume than the solid
+  int max_hull_vertices = 64;    ///< per hull
+};
+
+struct ConvexParts {
+  std::vector<TriangleMesh> hulls;   ///< convex, closed, outward; together they cover the solid (up to vertex decimation)
+  double excess = 0;                 ///< (sum of hull volumes - solid volume) / solid volume
+};
+
+/// Splits the solid by planes, always the part with the largest excess volume, along the plane that lowers the sum of hull volumes
+/// most. Each part's hull is that of its triangles clipped to the part's cell, so a cup keeps its opening. Deterministic.
+ConvexParts convex_parts(const TriangleMesh& solid, const ConvexPartsSettings& settings = {});
+
+}  // namespace sunder::geometry

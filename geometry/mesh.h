@@ -1,0 +1,24 @@
+#pragma once
+/// Triangle meshes as plain values.
+#include <array>
+#include <vector>
+
+#include "core/types.h"
+
+namespace sunder::geometry {
+
+using Triangle = std::array<int, 3>;
+
+/// Indexed triangles; faces turn counter-clockwise seen from outside. Positions in metres.
+struct TriangleMesh {
+  std::vector<Vec3> vertices;
+  std::vector<Triangle> faces;
+};
+
+/// Bounding box of all vertices (also of those that no face uses).
+Box bounds(const TriangleMesh& mesh);
+
+/// x -> linear * x + offset. A reflection turns the faces so that they keep pointing outward.
+TriangleMesh transformed(const TriangleMesh& mesh, const Mat3& linear, const Vec3& offset);
+
+}  // namespace sunder::geometry
