@@ -20,7 +20,8 @@ TriangleMesh torus(double ring_radius, double tube_radius, int ring_segments = 9
 /// A sphere with a concentric void; two shells.
 TriangleMesh hollow_sphere(double outer_radius, double wall, int subdivisions = 4);
 /// Surface of revolution about Y of a profile that runs counter-clockwise in the (radius, height) half plane, i.e. with the
-/// material on its left, and starts and ends on the axis (radius 0), where it is closed by fans.
+/// material on its left, and starts and ends on the axis (radius 0), where it is closed by fans. Heights stay as given: the
+/// result is not centred.
 TriangleMesh revolve(const std::vector<ProfilePoint>& profile, int segments = 96);
 
 /// An open cup: outer diameter 0.8 of the height, round foot and lip (the porcelain cup of the demo scenes: height 0.1, wall 0.006).
