@@ -56,11 +56,15 @@ TriangleMesh lathe(const std::vector<double>& heights, int segments, const std::
 }
 
 // A hollow vessel: `outer` runs from the axis at the bottom to the lip, `bowl` is the part of it that the inner wall
-// follows.
-TriangleMesh vessel(std::vector<Corner> outer, const std::vector<Corner>& bowl, double wall, double step) {
+// follows. The lip leans with the wall and its rounding trims the corner, so the result is scaled to the size that was
+// asked for.
+TriangleMesh vessel(std::vector<Corner> outer, const std::vector<Corner>& bowl, double wall, double diameter,
+                    double height) {
   const std::vector<Corner> inner = detail::offset_left(bowl, wall);
   outer.insert(outer.end(), inner.rbegin(), inner.rend());
-  return centred(revolve(detail::rounded(outer, step)));
+  const TriangleMesh mesh = revolve(detail::rounded(outer, height / 24));
+  const Vec3 scale = Vec3(diameter, height, diameter).cwiseQuotient(bounds(mesh).diagonal());
+  return centred(transformed(mesh, scale.asDiagonal(), Vec3::Zero()));
 }
 
 // Fillet of the lip: a half circle over the wall, less a hair so that its two arcs do not meet.
@@ -210,7 +214,7 @@ TriangleMesh cup(double height, double wall) {
                                {foot, 0, rounding},
                                {foot, ring, rounding}};
   outer.insert(outer.end(), bowl.begin() + 1, bowl.end());
-  return vessel(outer, bowl, wall, h / 20);
+  return vessel(outer, bowl, wall, 0.8 * h, h);
 }
 
 TriangleMesh pot(double height, double wall) {
@@ -222,7 +226,7 @@ TriangleMesh pot(double height, double wall) {
   outer.push_back({side(h - rim), h - rim, 0.2 * wall});
   outer.push_back({side(h - rim) + band, h - rim, 0.3 * wall});
   outer.push_back({side(h) + band, h, 0.45 * wall});
-  return vessel(outer, bowl, wall, h / 20);
+  return vessel(outer, bowl, wall, 2 * (side(h) + band), h);
 }
 
 TriangleMesh goblet(double height, double wall) {
@@ -238,7 +242,7 @@ TriangleMesh goblet(double height, double wall) {
                                {stem, 0.12 * h, 0.2 * h},
                                {stem, neck - 0.03 * h, 0.06 * h}};
   outer.insert(outer.end(), bowl.begin() + 1, bowl.end());
-  return vessel(outer, bowl, wall, h / 30);
+  return vessel(outer, bowl, wall, 0.42 * h, h);
 }
 
 TriangleMesh column(double height) {
