@@ -1,0 +1,67 @@
+#pragma once
+/// Crack-front rules: a crack is a surface with a front of finite speed. A purely local strength criterion knows
+/// neither, and where the grid is much coarser than the material's process zone it turns the whole overstressed region
+/// to powder.
+#include <vector>
+
+#include "core/types.h"
+#include "mpm/solve.h"
+
+namespace sunder::mpm {
+
+/// A virgin particle whose largest principal stress exceeds the propagation strength.
+struct Candidate {
+  int particle = 0;
+  Vec3 position = Vec3::Zero();  ///< material [m]
+  Vec3 normal = Vec3::UnitX();   ///< direction of the largest principal stress
+  double stress = 0;             ///< that stress [Pa]
+  double urgency = 0;            ///< stress / nucleation strength
+};
+
+/// What a candidate is to become.
+enum class Verdict {
+  wait,      ///< shielded by a crack beside it, or the front ahead of which it lies has not had the time to reach it
+  filler,    ///< starts at the propagation strength as part of the band of an existing crack
+  advance,   ///< starts at the propagation strength as the new front of an existing crack
+  nucleate,  ///< nothing near: a new crack if the stress exceeds the nucleation strength
+};
+
+/// The front particles so far, binned in material space.
+class CrackFronts {
+ public:
+  /// `domain`: material box of all particles; `cell_size` h [m]; `p_wave_speed` [m/s].
+  CrackFronts(const Box& domain, double cell_size, double p_wave_speed, const FrontSettings& settings);
+
+  /// What the fronts with sequence number >= `first` say about a candidate. Rules, with a the distance off the front
+  /// particle's crack plane and b the distance along it, for fronts within R_s whose normals are parallel enough:
+  /// beside (a > b tan(ahead)): a <= w_b and b <= h fills, otherwise shields; ahead within reach: advances once t - t_q
+  /// >= distance / speed.
+  struct Sight {
+    bool fills = false, shields = false, ahead = false, early = false;
+    Sight operator|(const Sight& o) const {
+      return {fills || o.fills, shields || o.shields, ahead || o.ahead, early || o.early};
+    }
+    /// Filler before shield before ahead before early: a crack fills its band first, and never grows a neighbour.
+    Verdict verdict() const;
+  };
+  Sight look(const Vec3& position, const Vec3& normal, double time, int first = 0) const;
+
+  void add(const Vec3& position, const Vec3& normal, double time);
+  int count() const { return count_; }
+
+ private:
+  struct Front {
+    Vec3 position, normal;
+    double time;
+    int number;
+  };
+  std::array<int, 3> bin(const Vec3& x) const;
+
+  Vec3 origin_;
+  double radius_, cell_size_, filler_width_, reach_, speed_, tan_ahead_, cos_parallel_;
+  std::array<int, 3> size_;
+  std::vector<std::vector<Front>> bins_;
+  int count_ = 0;
+};
+
+}  // namespace sunder::mpm
