@@ -40,6 +40,7 @@ struct CutResult {
   std::string detail;                  ///< what failed, for the log; empty when ok
   std::vector<Fragment> fragments;     ///< empty unless ok
   double volume_error = 0;             ///< |sum of fragment volumes - body volume| / body volume
+  int nudges = 0;                      ///< times the regions were moved together by 1e-6 of the body's size to get a valid cut
 };
 
 struct CutSettings {
