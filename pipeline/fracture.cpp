@@ -1,0 +1,147 @@
+#include "pipeline/fracture.h"
+
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+#include "core/random.h"
+#include "crack/extract.h"
+#include "geometry/mass_properties.h"
+#include "geometry/sample.h"
+#include "pipeline/handover.h"
+#include "pipeline/stopwatch.h"
+
+namespace sunder::pipeline {
+namespace {
+
+constexpr int cut_attempts = 4;
+
+mpm::Material solid(const Material& m) {
+  return {m.density, m.youngs_modulus, m.poisson_ratio, m.tensile_strength, m.fracture_energy, m.weibull_modulus};
+}
+
+/// The surface under a contact that collision hulls reported: the outermost sample near the axis, and half a spacing
+/// further out.
+Vec3 surface_point(const geometry::Samples& samples, const mpm::Load& load) {
+  const double reach = 3 * samples.spacing;
+  double highest = -std::numeric_limits<double>::infinity(), nearest = std::numeric_limits<double>::infinity();
+  Vec3 nearest_point = load.point;
+  for (const Vec3& x : samples.points) {
+    const Vec3 r = x - load.point;
+    const double height = r.dot(load.outward), off_axis = (r - height * load.outward).norm();
+    if (off_axis < reach && std::abs(height) < 2 * reach) highest = std::max(highest, height);
+    if (r.norm() < nearest) {
+      nearest = r.norm();
+      nearest_point = x;
+    }
+  }
+  if (std::isinf(highest)) return nearest_point + 0.5 * samples.spacing * load.outward;
+  return load.point + (highest + 0.5 * samples.spacing) * load.outward;
+}
+
+crack::DamageField damage_field(const geometry::Samples& samples, const mpm::SolveResult& solve) {
+  crack::DamageField field{samples.points, {}, samples.spacing, solve.cell_size};
+  for (const mpm::ParticleState& p : solve.particles) field.damage.push_back(p.damage);
+  return field;
+}
+
+struct Pieces {
+  crack::Extraction extraction;
+  geometry::CutResult cut;
+};
+
+/// Other Voronoi sites give another cut of the same damage, so a failed cut is worth another try.
+Pieces extract_and_cut(const FractureInput& input, const crack::DamageField& field, FractureOutcome& outcome,
+                       Progress& progress) {
+  Pieces pieces;
+  for (int attempt = 0; attempt < cut_attempts; ++attempt) {
+    crack::Settings settings;
+    settings.seed = random_word(input.seed, 0xc7ac4, static_cast<std::uint64_t>(attempt));
+    {
+      const Stopwatch watch(outcome.seconds.extract);
+      pieces.extraction = crack::extract(field, geometry::bounds(input.mesh), settings, progress);
+    }
+    if (pieces.extraction.retries > 0) outcome.fallbacks["voronoi_sites_jittered_anew"] += pieces.extraction.retries;
+    if (pieces.extraction.region_count < 2) return pieces;
+    const Stopwatch watch(outcome.seconds.cut);
+    pieces.cut = geometry::cut(input.mesh, pieces.extraction.boundary, {}, progress);
+    if (pieces.cut.status == geometry::CutStatus::ok) return pieces;
+    outcome.fallbacks["cut_retried"] += 1;
+  }
+  outcome.fallbacks["fracture_abandoned"] += 1;
+  return pieces;
+}
+
+/// Mean motion of the particles of each region: their momentum over their mass properties.
+std::vector<Twist> region_motion(const geometry::Samples& samples, const mpm::SolveResult& solve,
+                                 const std::vector<int>& region, int region_count, std::vector<Vec3>& centre) {
+  const std::size_t count = static_cast<std::size_t>(region_count);
+  std::vector<Vec3> linear(count, Vec3::Zero()), angular(count, Vec3::Zero());
+  std::vector<Mat3> inertia(count, Mat3::Zero());
+  std::vector<double> mass(count, 0.0);
+  centre.assign(count, Vec3::Zero());
+  const auto of = [&](std::size_t p) { return static_cast<std::size_t>(region[p]); };
+  const double m = solve.particle_mass;
+  for (std::size_t p = 0; p < region.size(); ++p) {
+    centre[of(p)] += m * samples.points[p];
+    mass[of(p)] += m;
+  }
+  for (std::size_t k = 0; k < count; ++k)
+    if (mass[k] > 0) centre[k] /= mass[k];
+  for (std::size_t p = 0; p < region.size(); ++p) {
+    const Vec3 r = samples.points[p] - centre[of(p)];
+    const mpm::ParticleState& s = solve.particles[p];
+    linear[of(p)] += m * s.velocity;
+    angular[of(p)] += m * r.cross(s.velocity) + s.spin_momentum;
+    // The particle's own extent keeps the inertia of a single row of particles regular.
+    const double own = m * samples.spacing * samples.spacing / 6;
+    inertia[of(p)] += m * (r.squaredNorm() * Mat3::Identity() - r * r.transpose()) + own * Mat3::Identity();
+  }
+  std::vector<Twist> twists(count);
+  for (std::size_t k = 0; k < count; ++k)
+    if (mass[k] > 0) twists[k] = {linear[k] / mass[k], inertia[k].ldlt().solve(angular[k])};
+  return twists;
+}
+
+}  // namespace
+
+FractureOutcome fracture(const FractureInput& input, Progress& progress) {
+  FractureOutcome outcome;
+  geometry::Samples samples;
+  {
+    const Stopwatch watch(outcome.seconds.sample);
+    samples = geometry::sample_solid(input.mesh, {.count = input.particles, .seed = input.seed}, progress);
+  }
+  auto loads = input.loads;
+  for (mpm::Load& load : loads) {
+    load.point = surface_point(samples, load);
+    outcome.load_points.push_back(load.point);
+  }
+  const double volume = geometry::mass_properties(input.mesh).volume;
+  {
+    const Stopwatch watch(outcome.seconds.solve);
+    outcome.solve =
+        mpm::solve(samples.points, volume, solid(input.material), loads, input.partners, input.solve, progress);
+  }
+  outcome.particles = static_cast<long>(samples.points.size());
+  if (outcome.solve.crushed_resets > 0)
+    outcome.fallbacks["crushed_particles_reset"] += static_cast<int>(outcome.solve.crushed_resets);
+  outcome.damaged_share = outcome.solve.damaged_share;
+  if (outcome.damaged_share == 0) return outcome;
+
+  const Pieces pieces = extract_and_cut(input, damage_field(samples, outcome.solve), outcome, progress);
+  outcome.lump_share = pieces.extraction.lump_share;
+  outcome.volume_error = pieces.cut.volume_error;
+  if (pieces.cut.fragments.size() < 2) return outcome;
+  std::vector<Vec3> centre;
+  const auto motion =
+      region_motion(samples, outcome.solve, pieces.extraction.region, pieces.extraction.region_count, centre);
+  for (const geometry::Fragment& fragment : pieces.cut.fragments) {
+    const std::size_t k = static_cast<std::size_t>(fragment.region);
+    const Vec3 c = geometry::mass_properties(fragment.mesh).centroid;
+    outcome.pieces.push_back({fragment, {motion[k].at(c - centre[k]), motion[k].angular}});
+  }
+  return outcome;
+}
+
+}  // namespace sunder::pipeline

@@ -1,0 +1,53 @@
+#pragma once
+/// One body breaks: sample, solve, extract, cut. Values in, values out; nothing here knows of worlds or scenes.
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/progress.h"
+#include "geometry/cut.h"
+#include "geometry/mesh.h"
+#include "mpm/solve.h"
+#include "pipeline/material.h"
+
+namespace sunder::pipeline {
+
+/// Fallbacks that were taken, by name, with how often.
+using Fallbacks = std::map<std::string, int>;
+
+/// Wall-clock seconds by stage.
+struct StageSeconds {
+  double sample = 0, solve = 0, extract = 0, cut = 0;
+};
+
+struct FractureInput {
+  geometry::TriangleMesh mesh;  ///< closed solid, in the body's frame [m]
+  Material material;
+  std::vector<mpm::Load> loads;  ///< in the body's frame; their points need to lie near the surface only
+  std::vector<mpm::Partner> partners;
+  mpm::SolveSettings solve;
+  int particles = 20000;
+  std::uint64_t seed = 1;
+};
+
+/// A piece with the motion of its own material.
+struct BrokenPiece {
+  geometry::Fragment fragment;
+  Twist twist;  ///< of its centre of mass, in the body's frame, relative to the body before the impact
+};
+
+struct FractureOutcome {
+  std::vector<BrokenPiece> pieces;  ///< fewer than two: the body stays whole
+  mpm::SolveResult solve;
+  std::vector<Vec3> load_points;  ///< where the loads were applied, in the body's frame [m]
+  double damaged_share = 0, lump_share = 0, volume_error = 0;
+  long particles = 0;
+  StageSeconds seconds;
+  Fallbacks fallbacks;
+};
+
+/// Errors: those of mpm::solve and of the interruption. A cut that fails is retried with other Voronoi sites; when it
+/// keeps failing the body stays whole and the fallback "fracture_abandoned" is counted.
+FractureOutcome fracture(const FractureInput& input, Progress& progress);
+
+}  // namespace sunder::pipeline

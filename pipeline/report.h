@@ -1,0 +1,58 @@
+#pragma once
+/// What happened in a run, for people and for farms: report.json.
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "pipeline/fracture.h"
+#include "pipeline/sequence.h"
+
+namespace sunder::pipeline {
+
+/// One solve of one body, whether it broke or not.
+struct FractureRecord {
+  std::string body;  ///< piece name
+  int piece = 0;
+  double time = 0;               ///< [s]
+  double impulse = 0;            ///< the rigid solver's, which triggered the solve [N s]
+  double delivered_impulse = 0;  ///< what the solve's contact delivered [N s]
+  double approach_speed = 0;     ///< largest of the loads [m/s]
+  long particles = 0, steps = 0, nuclei = 0;
+  StageSeconds seconds;
+  int fragments = 0;  ///< 0: stayed whole
+  double damaged_share = 0, lump_share = 0, volume_error = 0;
+  double work_over_impact_energy = 0, dissipated = 0;
+  double kinetic_before = 0, kinetic_after = 0;           ///< of the body and its partners [J]
+  double band_width = 0, admissible_length = 0;           ///< l_ch, l_max [m]
+  double tensile_strength = 0, propagation_strength = 0;  ///< of the material, and used at crack fronts [Pa]
+};
+
+struct RepairRecord {
+  std::string body;
+  std::vector<std::string> steps;
+};
+
+struct Report {
+  std::string scene, quality;
+  std::uint64_t seed = 0;
+  int threads = 0;
+  bool interrupted = false;
+  std::vector<std::string> effects_ran, effects_skipped;
+  std::vector<FractureRecord> fractures;
+  std::vector<RepairRecord> repairs;
+  long particle_steps = 0;
+  struct Seconds {
+    double total = 0, setup = 0, rigid = 0, sample = 0, solve = 0, extract = 0, cut = 0, write = 0;
+  } seconds;
+  Fallbacks fallbacks;
+  double peak_memory_mb = 0;
+  std::vector<std::string> notes;  ///< what the run did that a user should know, in sentences
+};
+
+/// The report as JSON text; `sequence` supplies fragments and frames. docs/report.md explains every key.
+std::string to_json(const Report& report, const Sequence& sequence);
+
+/// A few lines for the terminal.
+std::string summary(const Report& report, const Sequence& sequence);
+
+}  // namespace sunder::pipeline

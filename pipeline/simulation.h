@@ -1,0 +1,82 @@
+#pragma once
+/// The bodies of a running scene, and what happens to them step by step.
+#include <map>
+#include <vector>
+
+#include "core/progress.h"
+#include "pipeline/fracture.h"
+#include "pipeline/handover.h"
+#include "pipeline/report.h"
+#include "pipeline/run.h"
+#include "pipeline/scene.h"
+#include "pipeline/sequence.h"
+#include "rigid/world.h"
+
+namespace sunder::pipeline {
+
+class Simulation {
+ public:
+  /// Places the scene's bodies. Errors: ErrorKind::mesh, ErrorKind::usage (overlap at the start).
+  Simulation(const Scene& scene, const RunOptions& options, Progress& progress);
+
+  /// Time of the next step's end [s].
+  double time() const { return world_.time(); }
+  /// Advances the world by one step; bodies that were hit hard enough break within it.
+  void step(Progress& progress);
+  /// Adds the present poses to the sequence.
+  void record_frame();
+
+  const Sequence& sequence() const { return sequence_; }
+  Sequence take_sequence() { return std::move(sequence_); }
+  Report& report() { return report_; }
+  int steps_per_frame() const { return steps_per_frame_; }
+
+ private:
+  /// A body of the world that stands for a piece.
+  struct Live {
+    int piece = 0;
+    const SceneBody* origin = nullptr;
+    int origin_index = 0;
+    RigidPart part;              ///< in the piece's frame
+    double last_solve = -1e300;  ///< [s]
+  };
+  /// The impacts that one body takes in one step.
+  struct Hit {
+    rigid::BodyId body = 0;
+    std::vector<rigid::Impact> impacts;  ///< with the body as `body_a`
+    double impulse = 0, severity = 0;
+  };
+
+  void place(const SceneBody& body, int index, Progress& progress);
+  void require_no_overlap() const;
+  rigid::BodyId add_body(const Piece& piece, const Live& live, const Pose& pose, const Twist& twist, int family);
+  std::vector<Hit> breaking_hits(const std::vector<rigid::Impact>& impacts, double now) const;
+  bool may_break(const Live& live, double now) const;
+  rigid::Motion motion_of(const Live& live) const;
+  double free_mass(rigid::BodyId id) const;
+  double energy_of(rigid::BodyId id) const;
+  double minimum_impulse(const Live& live, double partner_mass) const;
+  const Piece& piece_of(const Live& live) const;
+  void solve(const Hit& hit, Progress& progress);
+  FractureInput fracture_input(const Hit& hit, std::vector<rigid::BodyId>& partner_ids) const;
+  void account(const FractureRecord& record, const FractureOutcome& outcome);
+  std::vector<Piece> pieces_of(const Live& parent, const FractureOutcome& outcome, std::vector<RigidPart>& parts) const;
+  Momentum push_partners(const Pose& pose, const FractureOutcome& outcome, const std::vector<mpm::Load>& loads,
+                         const std::vector<rigid::BodyId>& partners);
+  void hand_over(const Hit& hit, const FractureOutcome& outcome, const std::vector<mpm::Load>& loads,
+                 const std::vector<rigid::BodyId>& partners, FractureRecord& record);
+  void note_coarse_grid(const Material& material, const FractureRecord& record);
+
+  const Scene& scene_;
+  const RunOptions& options_;
+  int steps_per_frame_;
+  rigid::World world_;
+  Sequence sequence_;
+  Report report_;
+  std::map<rigid::BodyId, Live> live_;
+  std::vector<double> original_volume_;  ///< by scene body
+  std::vector<int> fracture_count_;      ///< by scene body, with all its fragments
+  int families_ = 0;
+};
+
+}  // namespace sunder::pipeline
