@@ -1,4 +1,0 @@
-#include "pipeline/scene.h"
-#include "pipeline/sequence.h"
-#include "pipeline/progress_display.h"
-#include "pipeline/material.h"

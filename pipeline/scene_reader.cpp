@@ -1,0 +1,230 @@
+#include <array>
+#include <cstdlib>
+#include <limits>
+
+#include "pipeline/detail/body_keys.h"
+#include "pipeline/detail/material_keys.h"
+#include "pipeline/detail/scene_keys.h"
+#include "pipeline/scene.h"
+
+namespace sunder::pipeline {
+namespace detail {
+namespace {
+
+constexpr std::int64_t kMaximumCount = std::numeric_limits<int>::max();
+
+void read_quality(const Value& value, Scene& scene) {
+  constexpr std::array<std::pair<std::string_view, Quality>, 3> kQualities = {
+      {{"draft", Quality::draft}, {"preview", Quality::preview}, {"final", Quality::final}}};
+  scene.quality = value.word<Quality>(kQualities);
+}
+
+void read_seed(const Value& value, Scene& scene) {
+  scene.seed = static_cast<std::uint64_t>(value.integer(0, std::numeric_limits<std::int64_t>::max()));
+}
+
+constexpr std::array<Key<Scene>, 6> kSceneKeys = {{
+    {"duration", [](const Value& value, Scene& scene) { scene.duration = value.positive(); }},
+    {"frame_rate", [](const Value& value, Scene& scene) { scene.frame_rate = value.positive(); }},
+    {"start_frame", [](const Value& value,
+                       Scene& scene) { scene.start_frame = static_cast<int>(value.integer(0, kMaximumCount / 2)); }},
+    {"seed", read_seed},
+    {"gravity", [](const Value& value, Scene& scene) { scene.gravity = value.vector(); }},
+    {"quality", read_quality},
+}};
+
+struct GroundDraft {
+  Ground ground;
+  const MaterialLibrary& materials;
+};
+
+constexpr std::array<Key<GroundDraft>, 2> kGroundKeys = {{
+    {"height", [](const Value& value, GroundDraft& draft) { draft.ground.height = value.number(); }},
+    {"material",
+     [](const Value& value, GroundDraft& draft) { draft.ground.material = find_material(value, draft.materials); }},
+}};
+
+void read_damage(const Value& value, FractureSettings& settings) {
+  constexpr std::array<std::pair<std::string_view, DamageModel>, 2> kModels = {
+      {{"front", DamageModel::front}, {"local", DamageModel::local}}};
+  settings.damage = value.word<DamageModel>(kModels);
+}
+
+void read_load(const Value& value, FractureSettings& settings) {
+  constexpr std::array<std::pair<std::string_view, LoadModel>, 2> kModels = {
+      {{"contact", LoadModel::contact}, {"prescribed", LoadModel::prescribed}}};
+  settings.load = value.word<LoadModel>(kModels);
+}
+
+constexpr std::array<Key<FractureSettings>, 6> kFractureKeys = {{
+    {"minimum_impulse",
+     [](const Value& value, FractureSettings& settings) { settings.minimum_impulse = value.non_negative(); }},
+    {"minimum_volume",
+     [](const Value& value, FractureSettings& settings) { settings.minimum_volume = value.within(0, 1); }},
+    {"maximum_fractures",
+     [](const Value& value, FractureSettings& settings) {
+       settings.maximum_fractures = static_cast<int>(value.integer(0, kMaximumCount));
+     }},
+    {"refracture_delay",
+     [](const Value& value, FractureSettings& settings) { settings.refracture_delay = value.non_negative(); }},
+    {"damage", read_damage},
+    {"load", read_load},
+}};
+
+constexpr std::array<Key<Effects>, 3> kEffectsKeys = {{
+    {"fracture", [](const Value& value, Effects& effects) { effects.fracture = value.flag(); }},
+    {"refracture", [](const Value& value, Effects& effects) { effects.refracture = value.flag(); }},
+    {"strength_scatter", [](const Value& value, Effects& effects) { effects.strength_scatter = value.flag(); }},
+}};
+
+constexpr std::array<Key<Outputs>, 2> kOutputKeys = {{
+    {"obj", [](const Value& value, Outputs& outputs) { outputs.obj = value.flag(); }},
+    {"glb", [](const Value& value, Outputs& outputs) { outputs.glb = value.flag(); }},
+}};
+
+const std::vector<std::string>& top_level_keys() {
+  static const std::vector<std::string> keys = {"scene", "ground", "material", "body", "fracture", "effects", "output"};
+  return keys;
+}
+
+std::string bracketed(std::string_view name) { return std::string("[").append(name).append("]"); }
+
+// Null when the scene has no such section.
+const toml::table* find_table(const std::filesystem::path& file, const toml::table& document, std::string_view name) {
+  const toml::node* node = document.get(name);
+  if (!node) return nullptr;
+  if (!node->is_table()) {
+    fail(file, static_cast<int>(node->source().begin.line), "expected a section " + bracketed(name));
+  }
+  return node->as_table();
+}
+
+template <class Target>
+void read_optional(const std::filesystem::path& file, const toml::table& document, std::string_view name,
+                   std::span<const Key<Target>> keys, Target& target) {
+  const toml::table* table = find_table(file, document, name);
+  if (table) read_section<Target>({file, *table, bracketed(name)}, keys, target);
+}
+
+std::vector<std::string> scene_material_keys() {
+  std::vector<std::string> keys = key_names(material_keys());
+  keys.insert(keys.begin(), "base");
+  return keys;
+}
+
+Material read_material(const Section& section, const MaterialLibrary& presets) {
+  check_keys(section, scene_material_keys());
+  Material material;
+  const toml::node* base = section.table.get("base");
+  if (base) {
+    material = find_material(Value(section.file, *base, section.name + ": base"), presets);
+    material.source = "as " + material.name + ", with values of " + section.file.filename().string();
+  } else {
+    material.source = section.file.filename().string();
+  }
+  read_keys(section, material_keys(), material);
+  check_complete(section, material);
+  return material;
+}
+
+// The presets and the scene's own materials; the latter win.
+MaterialLibrary read_materials(const std::filesystem::path& file, const toml::table& document,
+                               const MaterialLibrary& presets) {
+  MaterialLibrary library = presets;
+  const toml::table* sections = find_table(file, document, "material");
+  if (!sections) return library;
+  for (const auto& [key, node] : *sections) {
+    const int line = static_cast<int>(key.source().begin.line);
+    const std::string name(key.str());
+    check_name(file, line, name);
+    if (!node.is_table()) fail(file, line, "a material has a name: [material.<name>]");
+    library[name] = read_material({file, *node.as_table(), "material '" + name + "'"}, presets);
+    library[name].name = name;
+  }
+  return library;
+}
+
+std::optional<Ground> read_ground(const std::filesystem::path& file, const toml::table& document,
+                                  const MaterialLibrary& materials) {
+  if (!document.contains("ground")) return std::nullopt;
+  GroundDraft draft{.ground = {.height = 0, .material = materials.at("stone")}, .materials = materials};
+  read_optional<GroundDraft>(file, document, "ground", kGroundKeys, draft);
+  return draft.ground;
+}
+
+void check_unique_name(const std::filesystem::path& file, const std::vector<SceneBody>& bodies, const SceneBody& body) {
+  for (const SceneBody& other : bodies) {
+    if (other.name != body.name) continue;
+    fail(file, body.line,
+         "body name '" + body.name + "' is taken: line " + std::to_string(other.line) + " has a body of this name");
+  }
+}
+
+std::vector<SceneBody> read_bodies(const std::filesystem::path& file, const toml::table& document, const Names& names) {
+  const toml::node* node = document.get("body");
+  if (!node) fail(file, 1, "the scene has no body; add a section [[body]]");
+  const int line = static_cast<int>(node->source().begin.line);
+  if (!node->is_array_of_tables()) fail(file, line, "a body is a section [[body]], with two brackets");
+  std::vector<SceneBody> bodies;
+  for (const toml::node& entry : *node->as_array()) {
+    const SceneBody body = read_body(file, *entry.as_table(), names);
+    check_unique_name(file, bodies, body);
+    bodies.push_back(body);
+  }
+  return bodies;
+}
+
+void check_frame_count(const std::filesystem::path& file, const toml::table& document, const Scene& scene) {
+  constexpr double kMaximumFrames = 1e6;  // more is a slip of the pen, and would fill any disk
+  if (scene.duration * scene.frame_rate <= kMaximumFrames) return;
+  const toml::table* table = find_table(file, document, "scene");
+  fail(file, table ? static_cast<int>(table->source().begin.line) : 1,
+       "[scene]: duration times frame_rate gives more than a million frames");
+}
+
+}  // namespace
+
+std::vector<SectionKeys> scene_keys() {
+  return {{"[scene]", key_names<Scene>(kSceneKeys)},
+          {"[ground]", key_names<GroundDraft>(kGroundKeys)},
+          {"[material.<name>]", scene_material_keys()},
+          {"[[body]]", key_names(body_keys())},
+          {"[fracture]", key_names<FractureSettings>(kFractureKeys)},
+          {"[effects]", key_names<Effects>(kEffectsKeys)},
+          {"[output]", key_names<Outputs>(kOutputKeys)}};
+}
+
+}  // namespace detail
+
+AssetPaths default_assets() {
+  const auto folder = [](const char* variable, const char* otherwise) {
+    const char* value = std::getenv(variable);
+    return std::filesystem::path(value && *value ? value : otherwise);
+  };
+  const std::filesystem::path assets = folder("SUNDER_ASSETS", SUNDER_SOURCE_DIR "/assets");
+  return {.materials = assets / "materials.toml",
+          .meshes = assets / "meshes.toml",
+          .mesh_cache = folder("SUNDER_MESHES", SUNDER_SOURCE_DIR "/build/meshes")};
+}
+
+Scene load_scene(const std::filesystem::path& file, const AssetPaths& assets) {
+  using namespace detail;
+  const toml::table document = parse_file(file);
+  check_keys({file, document, "scene"}, top_level_keys());
+  Scene scene;
+  scene.file = file;
+  scene.name = file.stem().string();
+  read_optional<Scene>(file, document, "scene", kSceneKeys, scene);
+  check_frame_count(file, document, scene);
+  const Names names{.mesh_cache = assets.mesh_cache,
+                    .meshes = load_catalogue(assets.meshes),
+                    .materials = read_materials(file, document, load_materials(assets.materials))};
+  scene.ground = read_ground(file, document, names.materials);
+  scene.bodies = read_bodies(file, document, names);
+  read_optional<FractureSettings>(file, document, "fracture", kFractureKeys, scene.fracture);
+  read_optional<Effects>(file, document, "effects", kEffectsKeys, scene.effects);
+  read_optional<Outputs>(file, document, "output", kOutputKeys, scene.outputs);
+  return scene;
+}
+
+}  // namespace sunder::pipeline
