@@ -1,3 +1,4 @@
+#include "core/error.h"
 #include "geometry/inspect.h"
 #include "geometry/load.h"
 #include "geometry/repair.h"
