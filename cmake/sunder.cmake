@@ -17,7 +17,7 @@ if(NOT SUNDER_PORTABLE AND CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")
   # For all modules alike: Eigen's alignment follows the instruction set and must agree across libraries.
   target_compile_options(sunder_flags INTERFACE -march=x86-64-v3)
 endif()
-target_include_directories(sunder_flags INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/generated)
+target_include_directories(sunder_flags INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_definitions(sunder_flags INTERFACE SUNDER_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
 
 find_program(CCACHE ccache)
@@ -51,5 +51,6 @@ function(sunder_version_header)
     COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -DVERSION=${PROJECT_VERSION}
             -DOUTPUT=${PROJECT_BINARY_DIR}/generated/sunder_version.h -P ${PROJECT_SOURCE_DIR}/cmake/version.cmake
     BYPRODUCTS ${PROJECT_BINARY_DIR}/generated/sunder_version.h COMMENT "")
+  target_include_directories(sunder_pipeline PRIVATE ${PROJECT_BINARY_DIR}/generated)
   add_dependencies(sunder_pipeline sunder_version_header)
 endfunction()
