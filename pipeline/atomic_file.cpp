@@ -1,0 +1,65 @@
+#include <cerrno>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "core/error.h"
+#include "pipeline/sequence.h"
+
+namespace sunder::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const fs::path& file, int reason) {
+  throw Error(ErrorKind::io, "cannot write " + file.string() + ": " + std::generic_category().message(reason));
+}
+
+struct TemporaryFile {
+  fs::path path;
+  int descriptor = -1;
+};
+
+// A name that nobody else has: O_EXCL decides, so that runs may share a folder.
+TemporaryFile create_beside(const fs::path& file) {
+  std::string stem(".");
+  stem.append(file.filename().string()).append(".").append(std::to_string(getpid())).append(".");
+  constexpr int kAttempts = 1000;
+  for (int i = 0; i < kAttempts; ++i) {
+    const fs::path path = file.parent_path() / (stem + std::to_string(i) + ".tmp");
+    const int descriptor = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor >= 0) return {path, descriptor};
+    if (errno != EEXIST) fail(file, errno);
+  }
+  fail(file, EEXIST);
+}
+
+// 0, or the reason why not all bytes went out.
+int write_all(int descriptor, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = write(descriptor, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return written < 0 ? errno : ENOSPC;
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return 0;
+}
+
+}  // namespace
+
+void write_atomically(const fs::path& file, std::string_view bytes) {
+  const TemporaryFile temporary = create_beside(file);
+  int reason = write_all(temporary.descriptor, bytes);
+  // Some file systems report a full disk only here.
+  if (close(temporary.descriptor) != 0 && reason == 0) reason = errno;
+  if (reason == 0 && rename(temporary.path.c_str(), file.c_str()) != 0) reason = errno;
+  if (reason == 0) return;
+  unlink(temporary.path.c_str());
+  fail(file, reason);
+}
+
+}  // namespace sunder::pipeline

@@ -1,0 +1,113 @@
+#include <array>
+#include <charconv>
+#include <string>
+#include <string_view>
+
+#include "core/error.h"
+#include "pipeline/detail/look.h"
+#include "pipeline/detail/sequence_checks.h"
+#include "pipeline/sequence.h"
+
+namespace sunder::pipeline {
+namespace {
+
+// Text that grows at its end; numbers go straight into it.
+class TextBuffer {
+ public:
+  explicit TextBuffer(std::size_t capacity) { text_.reserve(capacity); }
+
+  TextBuffer& operator<<(std::string_view text) {
+    text_.append(text);
+    return *this;
+  }
+  TextBuffer& operator<<(long value) { return append(value); }
+  // 9 significant digits: what a reader with single precision needs to get every bit of it.
+  TextBuffer& operator<<(double value) { return append(value, std::chars_format::general, 9); }
+
+  const std::string& text() const { return text_; }
+
+ private:
+  template <class... Arguments>
+  TextBuffer& append(Arguments... arguments) {
+    std::array<char, 32> digits;
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), arguments...).ptr;
+    text_.append(digits.data(), end);
+    return *this;
+  }
+
+  std::string text_;
+};
+
+void append_faces(TextBuffer& out, const Piece& piece, bool inside, long first) {
+  const std::vector<geometry::Triangle> faces = detail::faces_of(piece, inside);
+  if (faces.empty()) return;
+  out << "usemtl " << piece.material << (inside ? "_inside\n" : "_outside\n");
+  for (const auto& [a, b, c] : faces) out << "f " << first + a << " " << first + b << " " << first + c << "\n";
+}
+
+// `first` is the OBJ number of the piece's first vertex; OBJ counts all vertices of a file from 1.
+void append_piece(TextBuffer& out, const Piece& piece, const Pose& pose, long first) {
+  out << "o " << piece.name << "\n";
+  const Mat3 rotation = pose.orientation.toRotationMatrix();
+  for (const Vec3& vertex : piece.mesh.vertices) {
+    const Vec3 x = rotation * vertex + pose.position;
+    out << "v " << x.x() << " " << x.y() << " " << x.z() << "\n";
+  }
+  append_faces(out, piece, false, first);
+  append_faces(out, piece, true, first);
+}
+
+std::size_t estimated_size(const Sequence& sequence, const Frame& frame) {
+  std::size_t size = 1000;
+  for (const PiecePose& pose : frame.poses) {
+    const geometry::TriangleMesh& mesh = sequence.pieces.at(static_cast<std::size_t>(pose.piece)).mesh;
+    size += 200 + 45 * mesh.vertices.size() + 24 * mesh.faces.size();
+  }
+  return size;
+}
+
+std::string frame_text(const Sequence& sequence, const Frame& frame) {
+  detail::require_finite(sequence, frame);
+  TextBuffer out(estimated_size(sequence, frame));
+  out << "# " << sequence.name << ", " << frame.time << " s; metres, Y up\n";
+  out << "mtllib " << sequence.name << ".mtl\ns off\n";
+  long first = 1;
+  for (const auto& [index, pose] : frame.poses) {
+    const Piece& piece = sequence.pieces.at(static_cast<std::size_t>(index));
+    append_piece(out, piece, pose, first);
+    first += static_cast<long>(piece.mesh.vertices.size());
+  }
+  return out.text();
+}
+
+void append_material(TextBuffer& out, std::string_view name, std::string_view side, const std::array<double, 3>& colour,
+                     const detail::Look& look) {
+  out << "newmtl " << name << side << "\n";
+  out << "Kd " << colour[0] << " " << colour[1] << " " << colour[2] << "\n";
+  out << "Pr " << look.roughness << "\nPm " << look.metallic << "\n";
+}
+
+std::string material_text(const Sequence& sequence) {
+  TextBuffer out(1000);
+  for (const std::string& name : detail::material_names(sequence)) {
+    const detail::Look look = detail::look_of(name);
+    append_material(out, name, "_outside", look.outside, look);
+    append_material(out, name, "_inside", look.inside, look);
+  }
+  return out.text();
+}
+
+std::string frame_number(long number) {
+  const std::string digits = std::to_string(number);
+  return std::string(digits.size() < 4 ? 4 - digits.size() : 0, '0') + digits;
+}
+
+}  // namespace
+
+void write_obj_frame(const Sequence& sequence, std::size_t frame, const std::filesystem::path& dir) {
+  const std::string number = frame_number(static_cast<long>(sequence.start_frame) + static_cast<long>(frame));
+  if (frame == 0) write_atomically(dir / (sequence.name + ".mtl"), material_text(sequence));
+  write_atomically(dir / (sequence.name + "." + number + ".obj"), frame_text(sequence, sequence.frames.at(frame)));
+}
+
+}  // namespace sunder::pipeline
