@@ -1,17 +1,15 @@
 #include "geometry/cut.h"
 
-#include <CGAL/Polygon_mesh_processing/connected_components.h>
-#include <CGAL/Polygon_mesh_processing/corefinement.h>
+#include <algorithm>
+#include <cmath>
+
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
 #include <CGAL/Polygon_mesh_processing/orientation.h>
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 
-#include <algorithm>
-#include <cmath>
-#include <optional>
-
 #include "core/random.h"
+#include "geometry/detail/body_cut.h"
 #include "geometry/detail/cgal_mesh.h"
 #include "geometry/detail/shells.h"
 #include "geometry/mass_properties.h"
@@ -21,13 +19,8 @@ namespace {
 
 namespace pmp = CGAL::Polygon_mesh_processing;
 using detail::Kernel;
-using detail::Shell;
 using detail::SurfaceMesh;
 using Point = Kernel::Point_3;
-using Face = SurfaceMesh::Face_index;
-using SourceMap = SurfaceMesh::Property_map<Face, int>;
-
-constexpr char kSource[] = "f:source";
 
 // Cut points that rounding moves across a neighbour, or a crack that touches the body without crossing it, can make a
 // fragment invalid. The whole complex is then moved by about this share of its size (regions keep fitting together).
@@ -85,11 +78,10 @@ void require_solid(const TriangleMesh& mesh, const SurfaceMesh& surface, const s
 
 SurfaceMesh body_surface(const TriangleMesh& body) {
   if (body.faces.empty()) reject("the body has no faces");
-  if (!indices_in_range(body) || !all_finite(body.vertices)) reject("the body has vertices that are not finite or missing");
+  if (!indices_in_range(body) || !all_finite(body.vertices))
+    reject("the body has vertices that are not finite or missing");
   SurfaceMesh surface = detail::to_cgal(body);
   require_solid(body, surface, "the body");
-  SourceMap source = surface.add_property_map<Face, int>(kSource, -1).first;
-  for (const Face face : surface.faces()) source[face] = static_cast<int>(face);
   return surface;
 }
 
@@ -128,7 +120,8 @@ std::vector<std::vector<Triangle>> triangulate(const RegionBoundary& regions) {
   const int vertex_count = static_cast<int>(regions.vertices.size());
   for (const RegionBoundary::Face& face : regions.faces) {
     const auto valid = [&](int vertex) { return vertex >= 0 && vertex < vertex_count; };
-    if (!std::all_of(face.loop.begin(), face.loop.end(), valid)) reject("a region face has a vertex that does not exist");
+    if (!std::all_of(face.loop.begin(), face.loop.end(), valid))
+      reject("a region face has a vertex that does not exist");
     if (face.inside < 0 || std::max(face.inside, face.outside) >= regions.region_count || face.outside < -1) {
       reject("a region face belongs to a region that does not exist");
     }
@@ -141,22 +134,6 @@ std::vector<std::vector<Triangle>> triangulate(const RegionBoundary& regions) {
     }
   }
   return result;
-}
-
-TriangleMesh compact(const std::vector<Vec3>& vertices, const std::vector<Triangle>& faces) {
-  TriangleMesh mesh;
-  std::vector<int> index(vertices.size(), -1);
-  for (Triangle face : faces) {
-    for (int& vertex : face) {
-      if (index[vertex] < 0) {
-        index[vertex] = static_cast<int>(mesh.vertices.size());
-        mesh.vertices.push_back(vertices[vertex]);
-      }
-      vertex = index[vertex];
-    }
-    mesh.faces.push_back(face);
-  }
-  return mesh;
 }
 
 SurfaceMesh region_surface(const TriangleMesh& region, const std::string& name) {
@@ -174,69 +151,7 @@ SurfaceMesh region_surface(const TriangleMesh& region, const std::string& name) 
   return surface;
 }
 
-// ---- The Boolean ----------------------------------------------------------------------------------------------
-
-// Hands the source of a body face down to its parts. Everything else comes from the region and keeps -1.
-struct SourceVisitor : pmp::Corefinement::Default_visitor<SurfaceMesh> {
-  SurfaceMesh* body;
-  SourceMap source;
-  int parent = -1;
-
-  SourceVisitor(SurfaceMesh& surface, SourceMap map) : body(&surface), source(map) {}
-
-  void before_subface_creations(Face split, SurfaceMesh& mesh) { parent = &mesh == body ? source[split] : -1; }
-  void after_subface_created(Face created, SurfaceMesh& mesh) {
-    if (&mesh == body) source[created] = parent;
-  }
-  void after_face_copy(Face, const SurfaceMesh&, Face created, SurfaceMesh&) { source[created] = -1; }
-};
-
-// Turns `body` into its part inside the region.
-void intersect(SurfaceMesh& body, SurfaceMesh& region) {
-  const SourceMap source = body.property_map<Face, int>(kSource).first;
-  const bool valid = pmp::corefine_and_compute_intersection(
-      body, region, body,
-      pmp::parameters::visitor(SourceVisitor(body, source)).throw_on_self_intersection(true));
-  if (!valid) reject("the part inside a region is not manifold");
-}
-
-std::vector<Shell> shells(SurfaceMesh& surface) {
-  const SourceMap source = surface.property_map<Face, int>(kSource).first;
-  const auto shell_of = surface.add_property_map<Face, std::size_t>("f:shell").first;
-  std::vector<Shell> result(pmp::connected_components(surface, shell_of));
-  std::vector<int> index(surface.num_vertices(), -1);
-  for (const Face face : surface.faces()) {
-    Shell& shell = result[shell_of[face]];
-    Triangle triangle;
-    int corner = 0;
-    for (const auto vertex : surface.vertices_around_face(surface.halfedge(face))) {
-      if (index[vertex] < 0) {
-        index[vertex] = static_cast<int>(shell.mesh.vertices.size());
-        shell.mesh.vertices.push_back(detail::to_vec3(surface.point(vertex)));
-      }
-      triangle[corner++] = index[vertex];
-    }
-    shell.mesh.faces.push_back(triangle);
-    shell.source.push_back(source[face]);
-  }
-  for (Shell& shell : result) shell.volume = mass_properties(shell.mesh).volume;
-  return result;
-}
-
-Vec3 lowest_vertex(const TriangleMesh& mesh) {
-  return *std::min_element(mesh.vertices.begin(), mesh.vertices.end(), [](const Vec3& a, const Vec3& b) {
-    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
-  });
-}
-
-std::vector<Shell> solids(SurfaceMesh& surface) {
-  std::vector<Shell> result = detail::nest(shells(surface));
-  std::stable_sort(result.begin(), result.end(), [](const Shell& a, const Shell& b) {
-    const Vec3 x = lowest_vertex(a.mesh), y = lowest_vertex(b.mesh);
-    return std::lexicographical_compare(x.begin(), x.end(), y.begin(), y.end());
-  });
-  return result;
-}
+// ---- Output ---------------------------------------------------------------------------------------------------
 
 void require_valid_fragment(const TriangleMesh& mesh) {
   const SurfaceMesh surface = detail::to_cgal(mesh);
@@ -254,7 +169,7 @@ Complex build_complex(const RegionBoundary& regions) {
   Complex complex;
   for (const std::vector<Triangle>& faces : triangulate(regions)) {
     const std::string name = "region " + std::to_string(complex.size());
-    complex.push_back(region_surface(compact(regions.vertices, faces), name));
+    complex.push_back(region_surface(detail::compact(regions.vertices, faces), name));
   }
   return complex;
 }
@@ -279,23 +194,30 @@ void nudge(Complex& complex, int attempt, double distance, const Box& box) {
   }
 }
 
-std::vector<Fragment> cut_region(const SurfaceMesh& body, const Box& box, SurfaceMesh region, int index) {
-  if (region.is_empty() || !bounds(region).intersects(box)) return {};
-  SurfaceMesh part = body;
-  intersect(part, region);
+std::vector<Fragment> fragments_of(const detail::Piece& piece, int region) {
   std::vector<Fragment> fragments;
-  for (Shell& solid : solids(part)) {
+  for (detail::Piece& solid : detail::solids(piece)) {
     require_valid_fragment(solid.mesh);
-    fragments.push_back({std::move(solid.mesh), std::move(solid.source), index});
+    fragments.push_back({std::move(solid.mesh), std::move(solid.source), region});
   }
   return fragments;
 }
 
-CutResult cut_all(const SurfaceMesh& body, const Box& box, const Complex& complex, Progress& progress) {
+std::vector<Fragment> cut_region(const detail::BodyCut& body, const SurfaceMesh& region, int index) {
+  try {
+    return fragments_of(body.inside(region), index);
+  } catch (const std::exception&) {
+    // Coplanar faces and the like.
+    return fragments_of(body.inside_whole(region), index);
+  }
+}
+
+CutResult cut_all(const detail::BodyCut& body, const Box& box, const Complex& complex, Progress& progress) {
   CutResult result;
   for (std::size_t region = 0; region < complex.size(); ++region) {
     progress.checkpoint("cut", static_cast<double>(region) / complex.size());
-    std::vector<Fragment> fragments = cut_region(body, box, complex[region], static_cast<int>(region));
+    if (complex[region].is_empty() || !bounds(complex[region]).intersects(box)) continue;
+    std::vector<Fragment> fragments = cut_region(body, complex[region], static_cast<int>(region));
     std::move(fragments.begin(), fragments.end(), std::back_inserter(result.fragments));
   }
   progress.checkpoint("cut", 1);
@@ -306,7 +228,7 @@ CutResult refused(CutStatus status, const std::string& detail, double volume_err
   return {.status = status, .detail = detail, .fragments = {}, .volume_error = volume_error};
 }
 
-CutResult attempt(const SurfaceMesh& body, const Box& box, const Complex& complex, Progress& progress) {
+CutResult attempt(const detail::BodyCut& body, const Box& box, const Complex& complex, Progress& progress) {
   try {
     return cut_all(body, box, complex, progress);
   } catch (const Error& error) {
@@ -328,7 +250,8 @@ CutResult checked_volume(CutResult result, double volume, double tolerance) {
 
 }  // namespace
 
-CutResult cut(const TriangleMesh& body, const RegionBoundary& regions, const CutSettings& settings, Progress& progress) {
+CutResult cut(const TriangleMesh& body, const RegionBoundary& regions, const CutSettings& settings,
+              Progress& progress) {
   SurfaceMesh surface;
   Complex complex;
   try {
@@ -337,12 +260,13 @@ CutResult cut(const TriangleMesh& body, const RegionBoundary& regions, const Cut
   } catch (const Error& error) {
     return refused(CutStatus::bad_input, error.what());
   }
+  const detail::BodyCut prepared(body, surface);
   const Box box = bounds(body);
   const double volume = mass_properties(body).volume;
   CutResult result;
   for (int nudges = 0; nudges < kAttempts; ++nudges) {
     if (nudges > 0) nudge(complex, nudges, kNudge * box.diagonal().norm(), box);
-    result = attempt(surface, box, complex, progress);
+    result = attempt(prepared, box, complex, progress);
     if (result.status == CutStatus::ok) result = checked_volume(std::move(result), volume, settings.volume_tolerance);
     result.nudges = nudges;
     if (result.status == CutStatus::ok) return result;

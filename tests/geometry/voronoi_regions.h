@@ -1,5 +1,6 @@
 #pragma once
-/// Region boundaries for the cut tests: the Voronoi cells of a few seeds in a box, made by clipping the box with bisectors.
+/// Region boundaries for the cut tests: the Voronoi cells of a few seeds in a box, made by clipping the box with
+/// bisectors.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -94,7 +95,8 @@ class Welder {
 };
 
 /// Seed i belongs to region region_of[i].
-inline RegionBoundary voronoi_regions(const Box& box, const std::vector<Vec3>& seeds, const std::vector<int>& region_of) {
+inline RegionBoundary voronoi_regions(const Box& box, const std::vector<Vec3>& seeds,
+                                      const std::vector<int>& region_of) {
   const double tolerance = 1e-9 * box.diagonal().norm();
   RegionBoundary result;
   result.region_count = 1 + *std::max_element(region_of.begin(), region_of.end());
