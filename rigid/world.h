@@ -17,16 +17,17 @@ enum class Motion { dynamic, fixed, kinematic };
 
 /// A body to be added. Its frame has its origin at the centre of mass.
 struct BodySetup {
-  std::vector<geometry::TriangleMesh> hulls;   ///< convex parts in the body's frame [m]
-  double mass = 1;                             ///< [kg]; ignored unless dynamic
-  Mat3 inertia = Mat3::Identity();             ///< about the centre of mass in body axes [kg m^2]
+  std::vector<geometry::TriangleMesh> hulls;  ///< convex parts in the body's frame [m]
+  double mass = 1;                            ///< [kg]; ignored unless dynamic
+  Mat3 inertia = Mat3::Identity();            ///< about the centre of mass in body axes [kg m^2]
   Pose pose;
   Twist twist;
   Motion motion = Motion::dynamic;
-  double restitution = 0.3;                    ///< of the pair: product of both
-  double friction = 0.5;                       ///< of the pair: geometric mean of both
-  /// Bodies of one family (the fragments of one fracture) may start in overlap: their collision hulls bulge over the common crack faces.
-  /// Such an initial overlap is tolerated and shrinks as they part, instead of pushing them apart. 0: no family.
+  double restitution = 0.3;  ///< of the pair: product of both
+  double friction = 0.5;     ///< of the pair: geometric mean of both
+  /// Bodies of one family (the fragments of one fracture) may start in overlap: their collision hulls bulge over the
+  /// common crack faces. Such an initial overlap is tolerated and shrinks as they part, instead of pushing them apart.
+  /// 0: no family.
   int family = 0;
 };
 
@@ -37,18 +38,18 @@ struct BodyState {
 
 /// One contact patch of one step: all contact points of a pair of bodies that lie together.
 struct Impact {
-  BodyId body_a = 0, body_b = 0;         ///< body_b may be ground_id
-  Vec3 point = Vec3::Zero();             ///< impulse-weighted mean of the contact points, world [m]
-  Vec3 normal = Vec3::Zero();            ///< unit, from b towards a: the push on a
-  double impulse = 0;                    ///< normal impulse of the step, a gets +impulse * normal [N s]
-  double approach_speed = 0;             ///< normal speed of approach of the two bodies at `point` before the step, > 0 [m/s]
+  BodyId body_a = 0, body_b = 0;  ///< body_b may be ground_id
+  Vec3 point = Vec3::Zero();      ///< impulse-weighted mean of the contact points, world [m]
+  Vec3 normal = Vec3::Zero();     ///< unit, from b towards a: the push on a
+  double impulse = 0;             ///< normal impulse of the step, a gets +impulse * normal [N s]
+  double approach_speed = 0;      ///< normal speed of approach of the two bodies at `point` before the step, > 0 [m/s]
 };
 
 struct WorldSettings {
-  Vec3 gravity = Vec3(0, -9.81, 0);      ///< [m/s^2]
-  double time_step = 1.0 / 480;          ///< [s]
+  Vec3 gravity = Vec3(0, -9.81, 0);  ///< [m/s^2]
+  double time_step = 1.0 / 480;      ///< [s]
   bool has_ground = false;
-  double ground_height = 0;              ///< plane y = ground_height [m]
+  double ground_height = 0;  ///< plane y = ground_height [m]
   double ground_restitution = 0.3, ground_friction = 0.6;
   /// Contacts that approach slower than this do not count as impacts (resting contact) [m/s].
   double resting_speed = 0.1;
@@ -76,18 +77,31 @@ class World {
   /// Advances by one time step and returns its impacts, ordered by ids and then by point.
   std::vector<Impact> step();
 
-  /// What `restore` needs to take steps back: poses, velocities, sleep states and the time. A body that was added or removed in
-  /// between stays as it is; contact caches are dropped, so a repeated step starts from cold contacts.
+  /// What `restore` needs to take steps back: poses, velocities, sleep, tolerated overlaps and the time. A body that
+  /// was added or removed in between stays as it is; contact caches are dropped, so a repeated step starts from cold
+  /// contacts and gives the same bits each time it is repeated.
   struct Snapshot {
+    struct Rest {
+      int activation = 0;
+      double quiet_time = 0;  ///< for how long it has been slow [s]
+      bool newborn = false;   ///< has not taken its first step
+    };
+    struct Tolerance {
+      BodyId body_a = 0, body_b = 0;
+      int part_a = 0, part_b = 0;
+      double depth = 0;  ///< [m]
+    };
     double time = 0;
     std::vector<BodyId> ids;
     std::vector<BodyState> states;
+    std::vector<Rest> rests;
+    std::vector<Tolerance> tolerances;
   };
   Snapshot snapshot() const;
   void restore(const Snapshot& snapshot);
 
-  /// Deepest overlap of any two bodies, or a body and the ground, where it is not tolerated (see BodySetup::family) [m].
-  /// For checks of the initial state: a pair of ids with its depth, deepest first.
+  /// Deepest overlap of any two bodies, or a body and the ground, where it is not tolerated (see BodySetup::family)
+  /// [m]. For checks of the initial state: a pair of ids with its depth, deepest first.
   struct Overlap {
     BodyId body_a = 0, body_b = 0;
     double depth = 0;

@@ -1,1 +1,0 @@
-#include "rigid/world.h"

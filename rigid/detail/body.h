@@ -1,0 +1,48 @@
+#pragma once
+/// A body as the solver sees it: its frame turned to the principal axes of inertia, which is the only frame Bullet
+/// knows.
+#include <memory>
+#include <vector>
+
+#include <btBulletDynamicsCommon.h>
+
+#include "rigid/detail/hull.h"
+#include "rigid/world.h"
+
+namespace sunder::rigid::detail {
+
+struct Body {
+  BodyId id = ground_id;
+  Motion motion = Motion::fixed;
+  double mass = 0;
+  Mat3 inertia = Mat3::Zero();        ///< body axes
+  Vec3 moments = Vec3::Zero();        ///< principal moments of inertia [kg m^2]
+  Quat principal = Quat::Identity();  ///< x_body = principal * x_principal
+  double restitution = 0, friction = 0;
+  bool newborn = false;      ///< member of a family that has not yet taken a step
+  std::vector<Hull> parts;   ///< principal axes; empty for the ground
+  double ground_height = 0;  ///< of the ground only
+  double radius = 0;         ///< of the bounding sphere about the centre of mass [m]
+  double reach = 0;          ///< contacts are looked for up to this distance [m]
+  double stride = 0;         ///< largest motion that a contact search may skip [m]
+  std::unique_ptr<btCollisionShape> shape;
+  std::unique_ptr<btRigidBody> object;
+
+  bool is_ground() const { return id == ground_id; }
+  bool is_dynamic() const { return motion == Motion::dynamic; }
+};
+
+/// Errors: see World::add.
+std::unique_ptr<Body> make_body(BodyId id, const BodySetup& setup, const Vec3& gravity);
+std::unique_ptr<Body> make_ground(const WorldSettings& settings);
+
+BodyState state_of(const Body& body);
+void place(Body& body, const BodyState& state);
+Mat3 world_inertia(const Body& body);
+
+/// Box around all parts at the present place.
+Box bounds(const Body& body);
+
+inline Body& body_of(const btCollisionObject& object) { return *static_cast<Body*>(object.getUserPointer()); }
+
+}  // namespace sunder::rigid::detail

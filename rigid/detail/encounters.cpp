@@ -1,0 +1,99 @@
+#include "rigid/detail/encounters.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "rigid/detail/contact.h"
+#include "rigid/detail/convert.h"
+
+namespace sunder::rigid::detail {
+namespace {
+
+// Beyond this a step would stall the run; a 5 mm fragment reaches it at about 300 m/s and 480 steps per second.
+constexpr int most_sub_steps = 512;
+
+struct StepMotion {
+  Vec3 shift = Vec3::Zero();  // of the centre of mass in one step [m]
+  double sweep = 0;           // of the outermost point by rotation [m]
+};
+
+StepMotion motion_of(const Body& body, const Vec3& gravity, double time_step) {
+  const btRigidBody& object = *body.object;
+  Vec3 shift = to_eigen(object.getLinearVelocity()) * time_step;
+  if (body.is_dynamic() && object.isActive()) shift += gravity * (time_step * time_step);
+  return {shift, object.getAngularVelocity().length() * body.radius * time_step};
+}
+
+Box swept(const Body& body, const StepMotion& motion) {
+  Box box = bounds(body);
+  const Box moved = box.translated(motion.shift);
+  box.extend(moved);
+  const Vec3 margin = Vec3::Constant(motion.sweep);
+  return Box(box.min() - margin, box.max() + margin);
+}
+
+double steps_for(double motion, double stride) { return std::ceil(motion / stride); }
+
+}  // namespace
+
+std::vector<std::pair<int, int>> touching(const std::vector<Box>& boxes) {
+  std::vector<int> order(boxes.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int i, int j) { return boxes[i].min().x() < boxes[j].min().x(); });
+  std::vector<std::pair<int, int>> pairs;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const Box& box = boxes[order[k]];
+    for (std::size_t l = k + 1; l < order.size() && boxes[order[l]].min().x() <= box.max().x(); ++l)
+      if (box.intersects(boxes[order[l]])) pairs.emplace_back(std::minmax(order[k], order[l]));
+  }
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+int sub_steps(const std::vector<const Body*>& bodies, const Body* ground, const Vec3& gravity, double time_step) {
+  std::vector<StepMotion> motions;
+  std::vector<Box> boxes;
+  for (const Body* body : bodies) {
+    motions.push_back(motion_of(*body, gravity, time_step));
+    boxes.push_back(swept(*body, motions.back()));
+  }
+  double steps = 1;
+  for (const auto& [i, j] : touching(boxes)) {
+    if (!bodies[i]->is_dynamic() && !bodies[j]->is_dynamic()) continue;
+    const double motion = (motions[i].shift - motions[j].shift).norm() + motions[i].sweep + motions[j].sweep;
+    steps = std::max(steps, steps_for(motion, std::min(bodies[i]->stride, bodies[j]->stride)));
+  }
+  for (std::size_t i = 0; ground && i < bodies.size(); ++i) {
+    if (boxes[i].min().y() > ground->ground_height || !bodies[i]->is_dynamic()) continue;
+    steps = std::max(steps, steps_for(motions[i].shift.norm() + motions[i].sweep, bodies[i]->stride));
+  }
+  return static_cast<int>(std::min<double>(steps, most_sub_steps));
+}
+
+std::vector<Box> part_bounds(const Body& body) {
+  std::vector<Box> boxes;
+  for (const Hull& part : body.parts) {
+    btVector3 low, high;
+    part.shape->getAabb(body.object->getWorldTransform(), low, high);
+    boxes.emplace_back(to_eigen(low), to_eigen(high));
+  }
+  return boxes;
+}
+
+std::vector<PartOverlap> part_overlaps(const Body& a, const Body& b) {
+  const btTransform &place_a = a.object->getWorldTransform(), &place_b = b.object->getWorldTransform();
+  std::vector<PartOverlap> overlaps;
+  const auto note = [&](int i, int j, const std::vector<Contact>& list) {
+    if (!list.empty() && list.front().distance < 0) overlaps.push_back({i, j, -list.front().distance});
+  };
+  const std::vector<Box> boxes_a = part_bounds(a), boxes_b = part_bounds(b);
+  for (int i = 0; i < static_cast<int>(a.parts.size()); ++i) {
+    if (b.is_ground()) note(i, 0, contacts_with_plane(a.parts[i], place_a, b.ground_height, 0));
+    for (int j = 0; j < static_cast<int>(b.parts.size()); ++j)
+      if (boxes_a[i].intersects(boxes_b[j])) note(i, j, contacts(a.parts[i], place_a, b.parts[j], place_b, 0));
+  }
+  return overlaps;
+}
+
+}  // namespace sunder::rigid::detail
