@@ -1,0 +1,82 @@
+/// Files are replaced whole or not at all.
+#include <csignal>
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include "core/error.h"
+#include "pipeline/sequence.h"
+#include "tests/pipeline/scratch_folder.h"
+
+namespace sunder::pipeline {
+namespace {
+
+// While it lives, no file can grow beyond `bytes`: the nearest thing to a full disk that needs no privileges.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    handler_before_ = std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit = {bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_before_);
+  }
+
+ private:
+  rlimit before_{};
+  void (*handler_before_)(int);
+};
+
+std::string complaint(const std::filesystem::path& file, std::string_view bytes) {
+  try {
+    write_atomically(file, bytes);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::io);
+    return error.what();
+  }
+  return "written";
+}
+
+TEST(AtomicFile, WritesEveryByteAndNothingElse) {
+  const ScratchFolder folder;
+  const std::string bytes("a\0b\r\n\xff", 6);
+  write_atomically(folder / "file", bytes);
+  EXPECT_EQ(read_all(folder / "file"), bytes);
+  write_atomically(folder / "file", "");
+  EXPECT_EQ(read_all(folder / "file"), "");
+  EXPECT_EQ(folder.file_count(), 1u);
+}
+
+TEST(AtomicFile, FullDiskLeavesTheOldFile) {
+  const ScratchFolder folder;
+  write_atomically(folder / "file", "old");
+  const std::string large(100'000, 'x');
+  std::string message;
+  {
+    const FileSizeLimit limit(50'000);
+    message = complaint(folder / "file", large);
+  }
+  EXPECT_NE(message.find((folder / "file").string()), std::string::npos) << message;
+  EXPECT_NE(message.find("File too large"), std::string::npos) << message;
+  EXPECT_EQ(read_all(folder / "file"), "old");
+  EXPECT_EQ(folder.file_count(), 1u) << "the temporary file is still there";
+}
+
+TEST(AtomicFile, MissingFolderIsNamed) {
+  const ScratchFolder folder;
+  const std::string message = complaint(folder / "nowhere" / "file", "text");
+  EXPECT_NE(message.find("nowhere/file: No such file or directory"), std::string::npos) << message;
+}
+
+TEST(AtomicFile, ATargetThatIsAFolderIsRefused) {
+  const ScratchFolder folder;
+  std::filesystem::create_directory(folder / "file");
+  EXPECT_NE(complaint(folder / "file", "text"), "written");
+  EXPECT_EQ(folder.file_count(), 1u);
+}
+
+}  // namespace
+}  // namespace sunder::pipeline

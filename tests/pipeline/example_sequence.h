@@ -1,0 +1,42 @@
+#pragma once
+/// A short sequence for the writers: a bar that breaks into two tetrahedra at the third of five frames.
+#include "pipeline/sequence.h"
+
+namespace sunder::pipeline {
+
+inline Piece example_piece(int id, const std::string& name, int parent) {
+  Piece piece;
+  piece.id = id;
+  piece.name = name;
+  piece.body = "bar";
+  piece.parent = parent;
+  piece.generation = parent < 0 ? 0 : 1;
+  piece.mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0.1234567891}};
+  piece.mesh.faces = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  piece.inside = {parent >= 0, false, false, false};
+  piece.volume = 0.02;
+  piece.mass = 50;
+  piece.material = "glass";
+  return piece;
+}
+
+inline Sequence example_sequence() {
+  Sequence sequence;
+  sequence.name = "example";
+  sequence.frame_rate = 10;
+  sequence.start_frame = 8;
+  sequence.pieces = {example_piece(0, "bar", -1), example_piece(1, "bar_0001", 0), example_piece(2, "bar_0002", 0)};
+  sequence.pieces[0].death_time = 0.2;
+  sequence.pieces[1].birth_time = sequence.pieces[2].birth_time = 0.2;
+  for (int i = 0; i < 5; ++i) {
+    const double time = 0.1 * i;
+    const Pose pose{Vec3(0, 1 - time, 0), Quat(Eigen::AngleAxisd(2 * time, Vec3::UnitZ()))};
+    // Every second quaternion has the other sign: the same rotation.
+    const Pose flipped{Vec3(0, 1, 0), i % 2 ? pose.orientation : Quat(-pose.orientation.coeffs())};
+    if (i < 2) sequence.frames.push_back({time, {{0, pose}}});
+    if (i >= 2) sequence.frames.push_back({time, {{1, pose}, {2, flipped}}});
+  }
+  return sequence;
+}
+
+}  // namespace sunder::pipeline

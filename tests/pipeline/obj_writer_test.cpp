@@ -1,0 +1,105 @@
+/// OBJ frames, read back by the geometry module and by eye.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "geometry/load.h"
+#include "geometry/mass_properties.h"
+#include "pipeline/sequence.h"
+#include "tests/pipeline/example_sequence.h"
+#include "tests/pipeline/scratch_folder.h"
+
+namespace sunder::pipeline {
+namespace {
+
+// Nine significant digits of a coordinate of order one.
+constexpr double kNineDigits = 5e-9;
+
+int count(const std::string& text, const std::string& part) {
+  int found = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+  return found;
+}
+
+TEST(ObjWriter, NamesFilesByFrameNumber) {
+  const ScratchFolder folder;
+  Sequence sequence = example_sequence();
+  write_obj_frame(sequence, 0, folder.path());
+  EXPECT_TRUE(std::filesystem::exists(folder / "example.0008.obj"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "example.mtl"));
+  sequence.start_frame = 9998;
+  write_obj_frame(sequence, 2, folder.path());
+  EXPECT_TRUE(std::filesystem::exists(folder / "example.10000.obj"));
+  EXPECT_EQ(folder.file_count(), 3u);
+}
+
+TEST(ObjWriter, WritesPiecesAndMaterials) {
+  const ScratchFolder folder;
+  const Sequence sequence = example_sequence();
+  write_obj_frame(sequence, 0, folder.path());
+  write_obj_frame(sequence, 3, folder.path());
+  const std::string first = read_all(folder / "example.0008.obj"), text = read_all(folder / "example.0011.obj");
+  EXPECT_EQ(count(first, "\no "), 1);
+  EXPECT_EQ(count(first, "_inside"), 0);
+  EXPECT_EQ(count(text, "\no bar_0001\n"), 1);
+  EXPECT_EQ(count(text, "\no bar_0002\n"), 1);
+  EXPECT_EQ(count(text, "usemtl glass_inside\n"), 2);
+  EXPECT_EQ(count(text, "usemtl glass_outside\n"), 2);
+  EXPECT_EQ(count(text, "\nf "), 8);
+  EXPECT_EQ(count(text, "\nv "), 8);
+  EXPECT_NE(text.find("\nf 5 7 6\n"), std::string::npos) << "the second piece's vertices follow the first's";
+  const std::string materials = read_all(folder / "example.mtl");
+  EXPECT_EQ(count(materials, "newmtl glass_outside\n") + count(materials, "newmtl glass_inside\n"), 2);
+}
+
+TEST(ObjWriter, AppliesPosesToNineDigits) {
+  const ScratchFolder folder;
+  const Sequence sequence = example_sequence();
+  write_obj_frame(sequence, 1, folder.path());
+  const std::string text = read_all(folder / "example.0009.obj");
+  std::istringstream in(text.substr(text.find("\nv ")));
+  for (const Vec3& vertex : sequence.pieces[0].mesh.vertices) {
+    std::string tag;
+    Vec3 x;
+    in >> tag >> x.x() >> x.y() >> x.z();
+    EXPECT_LT((x - sequence.frames[1].poses[0].pose * vertex).lpNorm<Eigen::Infinity>(), kNineDigits);
+  }
+}
+
+TEST(ObjWriter, IsReadBackAsTheSameSolids) {
+  const ScratchFolder folder;
+  write_obj_frame(example_sequence(), 3, folder.path());
+  const geometry::TriangleMesh mesh = geometry::load_mesh(folder / "example.0011.obj");
+  const double expected = 2 * 0.1234567891 / 6;
+  EXPECT_NEAR(geometry::mass_properties(mesh).volume, expected, 10 * kNineDigits);
+}
+
+TEST(ObjWriter, SameSequenceSameBytes) {
+  const ScratchFolder folder;
+  write_obj_frame(example_sequence(), 2, folder.path());
+  const std::string once = read_all(folder / "example.0010.obj");
+  write_obj_frame(example_sequence(), 2, folder.path());
+  EXPECT_EQ(read_all(folder / "example.0010.obj"), once);
+}
+
+TEST(ObjWriter, RefusesAPoseThatIsNotFinite) {
+  const ScratchFolder folder;
+  Sequence sequence = example_sequence();
+  sequence.frames[0].poses[0].pose.position.x() = std::nan("");
+  EXPECT_THROW(write_obj_frame(sequence, 0, folder.path()), Error);
+  EXPECT_FALSE(std::filesystem::exists(folder / "example.0008.obj"));
+}
+
+TEST(ObjWriter, MissingFolderIsAnIoError) {
+  const ScratchFolder folder;
+  try {
+    write_obj_frame(example_sequence(), 0, folder / "nowhere");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::io);
+  }
+}
+
+}  // namespace
+}  // namespace sunder::pipeline
