@@ -1,1 +1,0 @@
-#include "crack/extract.h"

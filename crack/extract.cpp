@@ -1,0 +1,185 @@
+#include "crack/extract.h"
+
+#include <cmath>
+#include <string>
+
+#include "core/random.h"
+#include "crack/boundary.h"
+#include "crack/cells.h"
+#include "crack/classify.h"
+#include "crack/detail/bins.h"
+#include "crack/islands.h"
+
+namespace sunder::crack {
+
+namespace {
+
+constexpr int most_tries = 8;
+constexpr double margin = 0.1;           // of the domain's diagonal, on every side of it
+constexpr double shortest_edge = 1e-10;  // of the domain's diagonal: what geometry::cut can tell from nothing
+constexpr double closing_gain = 1.02;    // neck closing roughens surfaces: it has to make more pieces by so much
+constexpr double lump_depth = 1.5;       // in cell sizes
+
+using detail::PointBins;
+
+void check(const DamageField& field) {
+  if (field.points.size() != field.damage.size())
+    throw Error(ErrorKind::internal, "crack: " + std::to_string(field.points.size()) + " points but " +
+                                         std::to_string(field.damage.size()) + " damage values");
+  if (!(field.spacing > 0) || !(field.cell_size > 0))
+    throw Error(ErrorKind::internal, "crack: spacing and cell size must be positive");
+  for (std::size_t i = 0; i < field.points.size(); ++i)
+    if (!field.points[i].allFinite() || std::isnan(field.damage[i]))
+      throw Error(ErrorKind::internal, "crack: point " + std::to_string(i) + " is not finite");
+}
+
+std::vector<int> indices_of(const std::vector<char>& marks, bool marked) {
+  std::vector<int> result;
+  for (int i = 0; i < static_cast<int>(marks.size()); ++i)
+    if (static_cast<bool>(marks[i]) == marked) result.push_back(i);
+  return result;
+}
+
+std::vector<char> sound_points(const DamageField& field, double crack_damage) {
+  std::vector<char> sound(field.points.size());
+  for (std::size_t i = 0; i < sound.size(); ++i) sound[i] = field.damage[i] < crack_damage;
+  return sound;
+}
+
+/// The sound points without those near damage: necks, and the borders of everything else.
+std::vector<char> eroded(const DamageField& field, const std::vector<char>& sound, double radius) {
+  const PointBins damaged(field.points, indices_of(sound, false), std::max(radius, field.spacing));
+  std::vector<char> result = sound;
+  for (std::size_t i = 0; i < sound.size(); ++i)
+    if (sound[i] && damaged.any_within(field.points[i], radius)) result[i] = 0;
+  return result;
+}
+
+double lump_share(const DamageField& field, const std::vector<char>& sound) {
+  const PointBins near(field.points, indices_of(sound, true), field.cell_size);
+  int deep = 0;
+  for (int i : indices_of(sound, false)) deep += !near.any_within(field.points[i], lump_depth * field.cell_size);
+  return static_cast<double>(deep) / static_cast<double>(sound.size());
+}
+
+struct Choice {
+  Partition partition;
+  double neck_radius = 0;
+};
+
+/// With and without neck closing, whichever makes more pieces.
+Choice choose_partition(const DamageField& field, const std::vector<char>& sound, const Settings& settings) {
+  const LinkGraph links = link_graph(field.points, settings.link * field.spacing);
+  const int smallest =
+      std::max(settings.smallest_points,
+               static_cast<int>(std::ceil(settings.smallest_share * static_cast<double>(field.points.size()))));
+  Choice plain{partition(field.points, links, sound, smallest, field.spacing), 0};
+  if (!settings.close_necks || !(settings.neck_radius > 0)) return plain;
+  const std::vector<char> solid = eroded(field, sound, settings.neck_radius * field.cell_size);
+  Choice closed{partition(field.points, links, solid, smallest, field.spacing), settings.neck_radius};
+  return closed.partition.effective_count > closing_gain * plain.partition.effective_count ? closed : plain;
+}
+
+/// Island points, and the points astray: they keep another limb's cells off.
+std::vector<Site> choose_sites(const DamageField& field, const Partition& pieces) {
+  std::vector<Site> sites;
+  if (pieces.count == 0) return sites;
+  for (int i = 0; i < static_cast<int>(field.points.size()); ++i)
+    if (pieces.is_island[i] || pieces.is_astray[i]) sites.push_back({field.points[i], pieces.piece[i], i});
+  return sites;
+}
+
+/// Every site displaced at random by up to `size` [m] along each axis, by its point's number.
+std::vector<Site> jittered(std::vector<Site> sites, double size, std::uint64_t seed, int attempt) {
+  for (Site& site : sites)
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::uint64_t stream = 3 * static_cast<std::uint64_t>(attempt) + axis;
+      site.position[axis] += size * (2 * random_unit(seed, stream, site.point) - 1);
+    }
+  return sites;
+}
+
+struct Cut {
+  CellFaces cells;
+  geometry::RegionBoundary boundary;
+  int retries = 0;
+};
+
+/// Jitters until the cells fit together.
+Cut cut_cells(const std::vector<Site>& sites, const CellRequest& request, int pieces, double jitter, std::uint64_t seed,
+              Progress& progress) {
+  for (int attempt = 0; attempt < most_tries; ++attempt) {
+    progress.checkpoint("extract", 0.3 + 0.5 * attempt / most_tries);
+    std::optional<CellFaces> cells = cell_faces(jittered(sites, jitter, seed, attempt), request);
+    if (!cells) continue;
+    geometry::RegionBoundary boundary;
+    if (request.pieces) boundary = region_boundary(sites, *cells, pieces);
+    if (is_closed(boundary)) return {std::move(*cells), std::move(boundary), attempt};
+  }
+  throw Error(ErrorKind::internal, "crack: Voronoi cells of " + std::to_string(sites.size()) +
+                                       " points do not fit together after " + std::to_string(most_tries) +
+                                       " tries; give crack points a larger jitter");
+}
+
+std::vector<CrackFace> crack_faces(const DamageField& field, const std::vector<Site>& sites,
+                                   const std::vector<char>& sound, const Cut& cut) {
+  const DamageBetween damage_between(field.points, indices_of(sound, false), field.spacing);
+  std::vector<CrackFace> faces;
+  const auto has_damage = [&](int a, int b) { return damage_between(sites[a].position, sites[b].position); };
+  for (const CellFace& face : cut.cells.faces) {
+    if (face.neighbour < 0) continue;
+    CrackFace& crack = faces.emplace_back();
+    for (int v : face.loop) crack.polygon.push_back(cut.cells.vertices[v]);
+    crack.kind = has_damage(face.site, face.neighbour) ? FaceKind::interior : FaceKind::extension;
+    crack.point_a = sites[face.site].point;
+    crack.point_b = sites[face.neighbour].point;
+  }
+  for (const InnerFace& face : cut.cells.inner)
+    if (has_damage(face.site, face.neighbour))
+      faces.push_back({face.polygon, FaceKind::partial, sites[face.site].point, sites[face.neighbour].point});
+  return faces;
+}
+
+Box enlarged(const DamageField& field, Box domain) {
+  for (const Vec3& x : field.points) domain.extend(x);
+  const double by = margin * domain.diagonal().norm();
+  return {domain.min() - Vec3::Constant(by), domain.max() + Vec3::Constant(by)};
+}
+
+}  // namespace
+
+Extraction extract(const DamageField& field, const Box& domain, const Settings& settings, Progress& progress) {
+  check(field);
+  Extraction result;
+  result.region.assign(field.points.size(), 0);
+  const std::vector<char> sound = sound_points(field, settings.crack_damage);
+  const std::vector<int> damaged = indices_of(sound, false);
+  if (damaged.empty()) return result;
+  result.damaged_share = static_cast<double>(damaged.size()) / static_cast<double>(sound.size());
+  result.lump_share = lump_share(field, sound);
+
+  progress.checkpoint("extract", 0.1);
+  const auto [pieces, neck_radius] = choose_partition(field, sound, settings);
+  result.neck_radius_used = neck_radius;
+  if (pieces.count > 1) {
+    result.region_count = pieces.count;
+    result.region = pieces.piece;
+    result.effective_count = pieces.effective_count;
+  }
+
+  const std::vector<Site> sites = choose_sites(field, pieces);
+  const double diagonal = domain.diagonal().norm();
+  const CellRequest request{.box = enlarged(field, domain),
+                            .unit = field.spacing,
+                            .shortest_edge = shortest_edge * diagonal,
+                            .inner_distance = settings.link * field.spacing,
+                            .pieces = pieces.count > 1};
+  Cut cut = cut_cells(sites, request, pieces.count, settings.jitter * diagonal, settings.seed, progress);
+  result.retries = cut.retries;
+  result.faces = crack_faces(field, sites, sound, cut);
+  result.boundary = std::move(cut.boundary);
+  progress.report("extract", 1);
+  return result;
+}
+
+}  // namespace sunder::crack
