@@ -1,11 +1,11 @@
 #include "geometry/load.h"
 
+#include <algorithm>
 #include <exception>
 #include <fstream>
 #include <iomanip>
 #include <limits>
 
-#include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -55,8 +55,22 @@ void append_node(TriangleMesh& mesh, const aiScene& scene, const aiNode& node, c
   for (unsigned i = 0; i < node.mNumChildren; ++i) append_node(mesh, scene, *node.mChildren[i], to_world);
 }
 
+// assimp makes room for as many vertices and faces as the head of an OFF file promises before it looks for them.
+void require_honest_off_header(const fs::path& file) {
+  std::ifstream in(file);
+  std::string magic;
+  double vertices = 0, faces = 0;
+  if (!(in >> magic >> vertices >> faces)) return;
+  // Even the shortest vertex line ("0 0 0") and face line are longer than this many bytes.
+  constexpr double kBytesPerLine = 4;
+  if (kBytesPerLine * (vertices + faces) > static_cast<double>(fs::file_size(file))) {
+    fail(ErrorKind::io, file, "is shorter than its header says");
+  }
+}
+
 TriangleMesh read(const fs::path& file) {
   if (!fs::is_regular_file(file)) fail(ErrorKind::io, file, "no such file");
+  if (file.extension() == ".off") require_honest_off_header(file);
   Assimp::Importer importer;
   // Only positions matter: without normals and texture coordinates vertices weld across seams.
   constexpr int kIgnored = aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_COLORS |
@@ -91,6 +105,11 @@ void write_off(std::ostream& out, const TriangleMesh& mesh) {
 TriangleMesh load_mesh(const fs::path& file, const LoadSettings& settings) {
   TriangleMesh mesh = read(file);
   if (mesh.faces.empty()) fail(ErrorKind::mesh, file, "holds no triangle");
+  const int count = static_cast<int>(mesh.vertices.size());
+  for (const auto& [a, b, c] : mesh.faces) {
+    const bool exist = std::min({a, b, c}) >= 0 && std::max({a, b, c}) < count;
+    if (!exist) fail(ErrorKind::mesh, file, "holds a face that names a vertex that does not exist");
+  }
   for (const Vec3& vertex : mesh.vertices) {
     if (!vertex.allFinite()) fail(ErrorKind::mesh, file, "holds a vertex whose position is not a finite number");
   }

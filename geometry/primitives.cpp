@@ -250,11 +250,11 @@ TriangleMesh column(double height) {
   const double h = height, step = h / 25;
   std::vector<ColumnRow> rows = {{0, 0}, {0.11 * h, 0, 0, true}, {0.11 * h, 0.05 * h, 0, true}};
   append_round(rows,
-               {{0.1 * h, 0.05 * h},
-                {0.106 * h, 0.05 * h, 0.02 * h},
-                {0.106 * h, 0.085 * h, 0.02 * h},
-                {0.086 * h, 0.085 * h, 0.01 * h},
-                {0.082 * h, 0.1 * h, 0.02 * h}},
+               {{0.098 * h, 0.05 * h},
+                {0.108 * h, 0.055 * h, 0.015 * h},
+                {0.108 * h, 0.08 * h, 0.015 * h},
+                {0.086 * h, 0.085 * h, 0.006 * h},
+                {0.082 * h, 0.1 * h}},
                step);
   append_shaft(rows, 0.105 * h, 0.88 * h, 0.077 * h, 0.064 * h);
   append_round(

@@ -16,15 +16,16 @@ struct RepairSettings {
 };
 
 struct RepairResult {
-  bool solid = false;                  ///< `mesh` is a closed, oriented solid without self-intersections
-  TriangleMesh mesh;                   ///< the best that was reached, also when not solid
-  std::vector<std::string> steps;      ///< what was done, in order, e.g. "filled 1 hole (56 edges)"; empty: nothing to do
+  bool solid = false;              ///< `mesh` is a closed, oriented solid without self-intersections
+  TriangleMesh mesh;               ///< the best that was reached, also when not solid
+  std::vector<std::string> steps;  ///< what was done, in order, e.g. "filled 1 hole (56 edges)"; empty: nothing to do
   MeshReport before, after;
-  bool remeshed = false;               ///< the last resort was taken
+  bool remeshed = false;  ///< the last resort was taken
 };
 
-/// Weld, drop degenerate faces, split non-manifold vertices, orient, fill holes, remove self-intersections (CGAL polygon mesh
-/// processing); what that cannot mend is remeshed through an OpenVDB level set. A mesh that is a solid is returned bit-identical.
+/// Weld, drop degenerate faces, split non-manifold vertices, orient, fill holes, unite shells that cross each other,
+/// remove other self-intersections (CGAL polygon mesh processing); what that cannot mend is remeshed through an OpenVDB
+/// level set. A mesh that is a solid is returned bit-identical.
 RepairResult repair(const TriangleMesh& mesh, const RepairSettings& settings = {});
 
 }  // namespace sunder::geometry

@@ -1,3 +1,6 @@
+// CGAL checks that it hopes for, not ones that it needs, would flood the terminal.
+#define CGAL_NO_WARNINGS
+
 #include "geometry/detail/mend.h"
 
 #include <exception>
@@ -18,6 +21,7 @@
 
 #include "geometry/detail/cgal_mesh.h"
 #include "geometry/detail/topology.h"
+#include "geometry/mass_properties.h"
 
 namespace sunder::geometry::detail {
 namespace {
@@ -40,7 +44,7 @@ template <class Operation>
 TriangleMesh attempt(const TriangleMesh& mesh, Steps& steps, const std::string& name, const Operation& operation) {
   try {
     return operation();
-  } catch (const std::exception& error) {
+  } catch (const std::exception&) {
     steps.push_back(name + " failed");
     return mesh;
   }
@@ -185,9 +189,10 @@ TriangleMesh without_crossings(const TriangleMesh& mesh, Steps& steps) {
 TriangleMesh outward(const TriangleMesh& mesh, Steps& steps) {
   return attempt(mesh, steps, "orienting", [&] {
     SurfaceMesh surface = to_cgal(mesh);
-    if (!CGAL::is_closed(surface) || pmp::does_bound_a_volume(surface)) return mesh;
+    const bool oriented = mass_properties(mesh).volume > 0 && pmp::does_bound_a_volume(surface);
+    if (oriented || !CGAL::is_closed(surface)) return mesh;
     pmp::orient_to_bound_a_volume(surface);
-    steps.push_back("turned shells outward");
+    steps.push_back("turned shells to bound a volume");
     return from_cgal(surface);
   });
 }

@@ -10,6 +10,8 @@ namespace {
 using Vec2 = Eigen::Vector2d;
 
 constexpr double kArcStep = std::numbers::pi / 12;
+// Arcs are divided finer than straight pieces, or wide ones would show.
+constexpr double kArcShare = 0.5;
 // An arc may use this share of a side, so that arcs at both ends of it never touch.
 constexpr double kSideShare = 0.49;
 
@@ -28,7 +30,8 @@ Bend bend(const Corner& before, const Corner& corner, const Corner& after) {
   return result;
 }
 
-void append_arc(std::vector<Vec2>& points, const Corner& before, const Corner& corner, const Corner& after) {
+void append_arc(std::vector<Vec2>& points, const Corner& before, const Corner& corner, const Corner& after,
+                double step) {
   const auto [in, out, turn] = bend(before, corner, after);
   const double room =
       kSideShare * std::min((point(corner) - point(before)).norm(), (point(after) - point(corner)).norm());
@@ -37,7 +40,8 @@ void append_arc(std::vector<Vec2>& points, const Corner& before, const Corner& c
   if (!(radius > 0)) return points.push_back(point(corner));
   const Vec2 start = point(corner) - radius * half_tangent * in;
   const Vec2 to_center = (turn > 0 ? radius : -radius) * left(in);
-  const int steps = std::max(1, static_cast<int>(std::ceil(std::abs(turn) / kArcStep)));
+  const double turn_step = std::min(kArcStep, step / radius);
+  const int steps = std::max(1, static_cast<int>(std::ceil(std::abs(turn) / turn_step)));
   for (int i = 0; i <= steps; ++i) {
     points.push_back(start + to_center - Eigen::Rotation2Dd(turn * i / steps) * to_center);
   }
@@ -47,7 +51,8 @@ void append_arc(std::vector<Vec2>& points, const Corner& before, const Corner& c
 
 std::vector<ProfilePoint> rounded(const std::vector<Corner>& corners, double step) {
   std::vector<Vec2> points = {point(corners.front())};
-  for (std::size_t i = 1; i + 1 < corners.size(); ++i) append_arc(points, corners[i - 1], corners[i], corners[i + 1]);
+  for (std::size_t i = 1; i + 1 < corners.size(); ++i)
+    append_arc(points, corners[i - 1], corners[i], corners[i + 1], kArcShare * step);
   points.push_back(point(corners.back()));
   std::vector<ProfilePoint> result = {{points[0].x(), points[0].y()}};
   for (std::size_t i = 1; i < points.size(); ++i) {

@@ -11,8 +11,8 @@ struct Corner {
   double radius = 0, height = 0, fillet = 0;
 };
 
-/// The polyline with arcs in its corners, every piece divided into steps of at most `step` and every arc into turns of
-/// at most 15 degrees.
+/// The polyline with arcs in its corners, every straight piece divided into steps of at most `step`, every arc
+/// into steps of at most half of it and turns of at most 15 degrees.
 std::vector<ProfilePoint> rounded(const std::vector<Corner>& corners, double step);
 
 /// The polyline moved to its left by `distance`, with arcs concentric to the given ones. It starts on the axis (radius
