@@ -28,7 +28,7 @@ struct World::Impl {
   double time = 0;
 
   Body& at(BodyId id) const;
-  void restart();
+  void restart(double last_step);
   std::vector<const Body*> list() const;
 };
 
@@ -40,9 +40,9 @@ Body& World::Impl::at(BodyId id) const {
 
 // A new simulation with the same bodies in the order of their ids: forgets contacts and the order in which things
 // happened.
-void World::Impl::restart() {
+void World::Impl::restart(double last_step) {
   simulation.reset();
-  simulation.emplace(settings, tolerances, log);
+  simulation.emplace(settings, last_step, tolerances, log);
   if (ground) simulation->insert(*ground);
   for (const auto& [id, body] : bodies) simulation->insert(*body);
 }
@@ -94,7 +94,7 @@ World::World(const WorldSettings& settings) : impl_(std::make_unique<Impl>()) {
   check(settings);
   impl_->settings = settings;
   if (settings.has_ground) impl_->ground = detail::make_ground(settings);
-  impl_->restart();
+  impl_->restart(settings.time_step);
 }
 
 World::~World() = default;
@@ -154,6 +154,7 @@ std::vector<Impact> World::step() {
 World::Snapshot World::snapshot() const {
   Snapshot snapshot;
   snapshot.time = impl_->time;
+  snapshot.last_step = impl_->simulation->last_step();
   for (const auto& [id, body] : impl_->bodies) {
     const btRigidBody& object = *body->object;
     snapshot.ids.push_back(id);
@@ -179,7 +180,7 @@ void World::restore(const Snapshot& snapshot) {
     body.object->setDeactivationTime(snapshot.rests[i].quiet_time);
     body.newborn = snapshot.rests[i].newborn;
   }
-  impl_->restart();
+  impl_->restart(snapshot.last_step);
 }
 
 std::vector<World::Overlap> World::overlaps() const {

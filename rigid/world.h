@@ -92,6 +92,7 @@ class World {
       double depth = 0;  ///< [m]
     };
     double time = 0;
+    double last_step = 0;  ///< length of the last sub-step [s]
     std::vector<BodyId> ids;
     std::vector<BodyState> states;
     std::vector<Rest> rests;

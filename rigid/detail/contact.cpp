@@ -60,7 +60,7 @@ void improve(Axis& best, const Axis& other) {
   if (other.gap > best.gap) best = other;
 }
 
-// For the rare pair on which GJK and EPA both give up: the best face normal of either part.
+// The best face normal of either part: exact where a face touches, and never too far off elsewhere.
 Axis best_face_axis(const Placed& a, const Placed& b) {
   Axis best;
   for (const HullFace& f : a.hull.faces) improve(best, axis_along(a, b, -(a.rotation * f.normal)));
@@ -92,7 +92,11 @@ Separation separation(const Placed& a, const btTransform& place_a, const Placed&
     improve(result.axis, axis_along(a, b, -normal.normalized()));
     result.on_a = to_eigen(found.witnesses[0]);
     result.on_b = to_eigen(found.witnesses[1]);
-  } else {
+  }
+  // Bodies that touch exactly leave GJK and EPA without a direction; the gap along what they return then differs from
+  // the distance.
+  const double accuracy = 1e-6 * std::min(a.hull.radius, b.hull.radius);
+  if (!(std::abs(result.axis.gap - found.distance) < accuracy)) {
     result.axis = best_face_axis(a, b);
     result.on_a = a.point(a.extreme(-result.axis.normal));
     result.on_b = result.on_a - result.axis.gap * result.axis.normal;

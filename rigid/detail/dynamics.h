@@ -25,7 +25,11 @@ using Tolerances = std::map<PartPair, double>;
 class Dynamics final : public btDiscreteDynamicsWorld {
  public:
   Dynamics(btDispatcher* dispatcher, btBroadphaseInterface* broadphase, btConstraintSolver* solver,
-           btCollisionConfiguration* configuration, Tolerances& tolerances, ContactLog& log, double time_step);
+           btCollisionConfiguration* configuration, Tolerances& tolerances, ContactLog& log, double last_step);
+
+  /// Sets the gravity of the step of this length that comes next.
+  void kick(double time_step);
+  double last_step() const { return last_step_; }
 
   void updateAabbs() override;
 
@@ -46,6 +50,8 @@ class Dynamics final : public btDiscreteDynamicsWorld {
     bool acts, hits;
   };
 
+  double kick_time(double time_step) const;
+  Vec3 acceleration_of(const Body& body) const;
   double tolerated(const btPersistentManifold& manifold);
   void prepare(btPersistentManifold& manifold, double time_step);
   void harvest();
@@ -60,7 +66,8 @@ class Dynamics final : public btDiscreteDynamicsWorld {
 /// Everything of Bullet that depends on history: made afresh, it behaves like any other made from the same bodies.
 class Simulation {
  public:
-  Simulation(const WorldSettings& settings, Tolerances& tolerances, ContactLog& log);
+  /// `last_step`: length of the (sub-)step that led here [s].
+  Simulation(const WorldSettings& settings, double last_step, Tolerances& tolerances, ContactLog& log);
   ~Simulation();
 
   void insert(Body& body);
@@ -68,6 +75,7 @@ class Simulation {
   void erase(Body& body);
   void wake_neighbours(Body& body);
   void advance(double time_step);
+  double last_step() const;
 
  private:
   struct Parts;
