@@ -48,6 +48,7 @@ class Builder {
     add_materials();
     const std::vector<detail::Track> tracks = detail::tracks(sequence_);
     model_.scenes.resize(1);
+    model_.scenes[0].name = sequence_.name;
     model_.defaultScene = 0;
     for (std::size_t i = 0; i < tracks.size(); ++i) add_piece(sequence_.pieces[i], tracks[i]);
     if (!animation_.channels.empty()) model_.animations.push_back(animation_);

@@ -161,7 +161,9 @@ TEST(GlbWriter, WritesASequenceOfOneFrameWithoutAnimation) {
 TEST(GlbWriter, WritesAnEmptySequence) {
   Sequence sequence;
   sequence.name = "empty";
-  EXPECT_FALSE(written(sequence).document.contains("nodes"));
+  const json document = written(sequence).document;
+  EXPECT_FALSE(document.contains("nodes"));
+  EXPECT_EQ(document["scenes"][0]["name"], "empty");
 }
 
 TEST(GlbWriter, UsesWideIndicesForLargePieces) {
