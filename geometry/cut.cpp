@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <CGAL/Polygon_mesh_processing/measure.h>
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
 #include <CGAL/Polygon_mesh_processing/orientation.h>
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
@@ -67,19 +68,26 @@ bool has_non_manifold_vertex(const SurfaceMesh& mesh) {
   return around != mesh.number_of_halfedges();
 }
 
+// CGAL accepts the outside of a surface as a volume too.
+void require_volume(const SurfaceMesh& surface, const std::string& name) {
+  if (!pmp::does_bound_a_volume(surface)) reject(name + " does not bound a volume");
+  if (!(pmp::volume(surface) > 0)) reject(name + " is inside out or has no volume");
+}
+
 // What corefinement asks of its operands and cannot check itself: without it it may hang.
 void require_solid(const TriangleMesh& mesh, const SurfaceMesh& surface, const std::string& name) {
   if (!CGAL::is_closed(surface)) reject(name + " is not closed");
   if (has_non_manifold_vertex(surface)) reject(name + " has a vertex where several fans of faces meet");
-  if (has_coincident_points(mesh.vertices)) reject(name + " has coincident vertices");
+  if (has_coincident_points(detail::compact(mesh.vertices, mesh.faces).vertices))
+    reject(name + " has coincident vertices");
   if (has_degenerate_face(mesh)) reject(name + " has a face without area");
-  if (!pmp::does_bound_a_volume(surface)) reject(name + " does not bound a volume");
+  require_volume(surface, name);
 }
 
 SurfaceMesh body_surface(const TriangleMesh& body) {
   if (body.faces.empty()) reject("the body has no faces");
-  if (!indices_in_range(body) || !all_finite(body.vertices))
-    reject("the body has vertices that are not finite or missing");
+  if (!indices_in_range(body)) reject("a face of the body has a vertex that does not exist");
+  if (!all_finite(body.vertices)) reject("the body has a vertex that is not finite");
   SurfaceMesh surface = detail::to_cgal(body);
   require_solid(body, surface, "the body");
   return surface;
@@ -120,8 +128,7 @@ std::vector<std::vector<Triangle>> triangulate(const RegionBoundary& regions) {
   const int vertex_count = static_cast<int>(regions.vertices.size());
   for (const RegionBoundary::Face& face : regions.faces) {
     const auto valid = [&](int vertex) { return vertex >= 0 && vertex < vertex_count; };
-    if (!std::all_of(face.loop.begin(), face.loop.end(), valid))
-      reject("a region face has a vertex that does not exist");
+    if (!std::all_of(face.loop.begin(), face.loop.end(), valid)) reject("a region face has a missing vertex");
     if (face.inside < 0 || std::max(face.inside, face.outside) >= regions.region_count || face.outside < -1) {
       reject("a region face belongs to a region that does not exist");
     }
@@ -137,6 +144,7 @@ std::vector<std::vector<Triangle>> triangulate(const RegionBoundary& regions) {
 }
 
 SurfaceMesh region_surface(const TriangleMesh& region, const std::string& name) {
+  if (region.faces.empty()) return {};
   if (has_coincident_points(region.vertices)) reject(name + " has coincident vertices");
   std::vector<Point> points;
   for (const Vec3& x : region.vertices) points.push_back(detail::to_point(x));
@@ -147,7 +155,7 @@ SurfaceMesh region_surface(const TriangleMesh& region, const std::string& name) 
   if (!pmp::is_polygon_soup_a_polygon_mesh(faces)) reject(name + " is not a manifold surface");
   pmp::polygon_soup_to_polygon_mesh(points, faces, surface);
   if (!CGAL::is_closed(surface)) reject(name + " is not closed");
-  if (!pmp::does_bound_a_volume(surface)) reject(name + " does not bound a volume");
+  require_volume(surface, name);
   return surface;
 }
 
@@ -257,7 +265,7 @@ CutResult cut(const TriangleMesh& body, const RegionBoundary& regions, const Cut
   try {
     surface = body_surface(body);
     complex = build_complex(regions);
-  } catch (const Error& error) {
+  } catch (const std::exception& error) {
     return refused(CutStatus::bad_input, error.what());
   }
   const detail::BodyCut prepared(body, surface);

@@ -1,0 +1,393 @@
+#include "geometry/cut.h"
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <set>
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "geometry/inspect.h"
+#include "geometry/mass_properties.h"
+#include "geometry/primitives.h"
+#include "tests/geometry/voronoi_regions.h"
+
+namespace sunder::geometry {
+namespace {
+
+// Sums of volumes, centres and inertias against the parent's: rounding of a few hundred faces.
+constexpr double kConserved = 1e-9;
+// A cut point is rounded once; its distance from the planes that made it, relative to the body's size.
+constexpr double kOnPlane = 1e-12;
+
+// The L of two boxes; its faces at x = 0 and y = 0 go on inside as no face, so cracks there are coplanar with faces.
+TriangleMesh l_shape() {
+  const std::vector<std::array<double, 2>> outline = {{-1, -1}, {1, -1}, {1, 0}, {0, 0}, {0, 1}, {-1, 1}};
+  TriangleMesh mesh;
+  for (const double z : {-0.5, 0.5}) {
+    for (const auto& [x, y] : outline) mesh.vertices.push_back({x, y, z});
+  }
+  for (const auto& [a, b, c] : {Triangle{0, 1, 3}, {1, 2, 3}, {0, 3, 5}, {3, 4, 5}}) {
+    mesh.faces.push_back({a, c, b});
+    mesh.faces.push_back({a + 6, b + 6, c + 6});
+  }
+  for (int i = 0; i < 6; ++i) {
+    const int j = (i + 1) % 6;
+    mesh.faces.push_back({i, j, j + 6});
+    mesh.faces.push_back({i, j + 6, i + 6});
+  }
+  return mesh;
+}
+
+struct Family {
+  const char* name;
+  TriangleMesh mesh;
+};
+
+std::vector<Family> families() {
+  return {{"box", box({1, 0.6, 0.3})},
+          {"sphere", sphere(1, 3)},
+          {"torus", torus(1, 0.3, 32, 12)},
+          {"cup", cup(0.1, 0.006)},
+          {"hollow sphere", hollow_sphere(1, 0.1, 3)},
+          {"L", l_shape()}};
+}
+
+// chi = V - E + F of the faces' edges and vertices.
+int euler_characteristic(const TriangleMesh& mesh) {
+  std::set<std::pair<int, int>> edges;
+  std::set<int> vertices;
+  for (const Triangle& face : mesh.faces) {
+    for (int k = 0; k < 3; ++k) {
+      edges.insert(std::minmax({face[k], face[(k + 1) % 3]}));
+      vertices.insert(face[k]);
+    }
+  }
+  return static_cast<int>(vertices.size()) - static_cast<int>(edges.size()) + static_cast<int>(mesh.faces.size());
+}
+
+Mat3 inertia_about(const MassProperties& part, const Vec3& point) {
+  const Vec3 r = part.centroid - point;
+  return part.inertia + part.volume * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
+}
+
+void expect_solids(const CutResult& result) {
+  for (const Fragment& fragment : result.fragments) {
+    ASSERT_EQ(fragment.source_face.size(), fragment.mesh.faces.size());
+    const MeshReport report = inspect(fragment.mesh);
+    EXPECT_TRUE(report.is_solid()) << report.summary();
+    const int chi = euler_characteristic(fragment.mesh);
+    EXPECT_EQ(chi % 2, 0);
+    EXPECT_LE(chi, 2 * report.shells);
+  }
+}
+
+void expect_conserved(const TriangleMesh& body, const CutResult& result) {
+  const MassProperties whole = mass_properties(body);
+  double volume = 0;
+  Vec3 moment = Vec3::Zero();
+  Mat3 inertia = Mat3::Zero();
+  for (const Fragment& fragment : result.fragments) {
+    const MassProperties part = mass_properties(fragment.mesh);
+    volume += part.volume;
+    moment += part.volume * (part.centroid - whole.centroid);
+    inertia += inertia_about(part, whole.centroid);
+  }
+  const double size = bounds(body).diagonal().norm();
+  EXPECT_NEAR(volume, whole.volume, kConserved * whole.volume);
+  EXPECT_LE(moment.norm(), kConserved * whole.volume * size);
+  EXPECT_LE((inertia - whole.inertia).norm(), kConserved * whole.inertia.norm());
+}
+
+double plane_distance(const Vec3& x, const Vec3& on_plane, const Vec3& normal) {
+  return std::abs((x - on_plane).dot(normal.normalized()));
+}
+
+// The distance of a face from the nearest plane among those of the region's faces.
+double distance_to_region(const TriangleMesh& mesh, const Triangle& face, const RegionBoundary& regions, int region) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const RegionBoundary::Face& candidate : regions.faces) {
+    if (candidate.inside != region && candidate.outside != region) continue;
+    Vec3 normal = Vec3::Zero();  // of the polygon, by Newell's sum
+    for (std::size_t i = 0; i < candidate.loop.size(); ++i) {
+      const Vec3& a = regions.vertices[candidate.loop[0]];
+      normal += (regions.vertices[candidate.loop[i]] - a)
+                    .cross(regions.vertices[candidate.loop[(i + 1) % candidate.loop.size()]] - a);
+    }
+    double farthest = 0;
+    for (const int vertex : face) {
+      farthest = std::max(farthest, plane_distance(mesh.vertices[vertex], regions.vertices[candidate.loop[0]], normal));
+    }
+    nearest = std::min(nearest, farthest);
+  }
+  return nearest;
+}
+
+double face_area(const TriangleMesh& mesh, const Triangle& face) {
+  const Vec3& a = mesh.vertices[face[0]];
+  return (mesh.vertices[face[1]] - a).cross(mesh.vertices[face[2]] - a).norm() / 2;
+}
+
+void expect_provenance(const TriangleMesh& body, const RegionBoundary& regions, const CutResult& result) {
+  const double tolerance = kOnPlane * bounds(body).diagonal().norm();
+  std::vector<double> area(body.faces.size(), 0);
+  for (const Fragment& fragment : result.fragments) {
+    for (std::size_t i = 0; i < fragment.mesh.faces.size(); ++i) {
+      const Triangle& face = fragment.mesh.faces[i];
+      const int source = fragment.source_face[i];
+      if (source < 0) {
+        EXPECT_LE(distance_to_region(fragment.mesh, face, regions, fragment.region), tolerance);
+        continue;
+      }
+      const Triangle& parent = body.faces[source];
+      const Vec3& a = body.vertices[parent[0]];
+      const Vec3 normal = (body.vertices[parent[1]] - a).cross(body.vertices[parent[2]] - a);
+      for (const int vertex : face) EXPECT_LE(plane_distance(fragment.mesh.vertices[vertex], a, normal), tolerance);
+      area[source] += face_area(fragment.mesh, face);
+    }
+  }
+  for (std::size_t i = 0; i < area.size(); ++i) {
+    EXPECT_NEAR(area[i], face_area(body, body.faces[i]), kConserved * face_area(body, body.faces[i]));
+  }
+}
+
+CutResult cut_silently(const TriangleMesh& body, const RegionBoundary& regions) {
+  SilentProgress progress;
+  return cut(body, regions, {}, progress);
+}
+
+bool same(const CutResult& a, const CutResult& b) {
+  if (a.fragments.size() != b.fragments.size()) return false;
+  for (std::size_t i = 0; i < a.fragments.size(); ++i) {
+    const Fragment &x = a.fragments[i], &y = b.fragments[i];
+    if (x.mesh.vertices != y.mesh.vertices || x.mesh.faces != y.mesh.faces) return false;
+    if (x.source_face != y.source_face || x.region != y.region) return false;
+  }
+  return true;
+}
+
+TriangleMesh turned_by(const TriangleMesh& mesh, std::uint64_t seed) {
+  const auto random = [&](int i) { return random_unit(seed, 9, i) - 0.5; };
+  const Quat rotation = Quat(random(0), random(1), random(2), random(3)).normalized();
+  return transformed(mesh, rotation.toRotationMatrix(), {random(4), random(5), random(6)});
+}
+
+// Two halves of a padded box, parted by the plane through `height` on the axis.
+RegionBoundary halves(const TriangleMesh& body, int axis, double height) {
+  const double span = bounds(body).diagonal().norm();
+  Vec3 below = Vec3::Zero(), above = Vec3::Zero();
+  below[axis] = height - span, above[axis] = height + span;
+  Box space = padded(bounds(body));
+  space.min()[axis] = height - 2 * span, space.max()[axis] = height + 2 * span;
+  return voronoi_regions(space, {below, above}, {0, 1});
+}
+
+TEST(Cut, KeepsEverythingOverFamiliesOfShapes) {
+  for (const Family& family : families()) {
+    SCOPED_TRACE(family.name);
+    const RegionBoundary regions = random_regions(family.mesh, 18, 6, 1);
+    const CutResult result = cut_silently(family.mesh, regions);
+    ASSERT_EQ(result.status, CutStatus::ok) << result.detail;
+    EXPECT_GE(result.fragments.size(), 4u);
+    EXPECT_EQ(result.nudges, 0);
+    expect_solids(result);
+    expect_conserved(family.mesh, result);
+    expect_provenance(family.mesh, regions, result);
+  }
+}
+
+RC_GTEST_PROP(Cut, KeepsEverythingInAnyOrientation, ()) {
+  const std::uint64_t seed = *rc::gen::arbitrary<std::uint32_t>();
+  const std::vector<Family> all = families();
+  const Family& family = all[*rc::gen::inRange<std::size_t>(0, all.size())];
+  const int cells = *rc::gen::inRange(2, 14);
+  const int regions = *rc::gen::inRange(1, cells + 1);
+  const TriangleMesh body = turned_by(family.mesh, seed);
+  const CutResult result = cut_silently(body, random_regions(body, cells, regions, seed));
+  RC_ASSERT(result.status == CutStatus::ok);
+  RC_ASSERT(result.volume_error <= 1e-12);
+  expect_conserved(body, result);
+  RC_ASSERT(!testing::Test::HasFailure());
+}
+
+TEST(Cut, FragmentsCanBeCutAgain) {
+  for (const Family& family : families()) {
+    SCOPED_TRACE(family.name);
+    const CutResult first = cut_silently(family.mesh, random_regions(family.mesh, 8, 4, 3));
+    ASSERT_EQ(first.status, CutStatus::ok) << first.detail;
+    for (const Fragment& fragment : first.fragments) {
+      const CutResult second = cut_silently(fragment.mesh, random_regions(fragment.mesh, 8, 4, 4));
+      ASSERT_EQ(second.status, CutStatus::ok) << second.detail;
+      expect_solids(second);
+      expect_conserved(fragment.mesh, second);
+    }
+  }
+}
+
+TEST(Cut, OneRegionGivesTheBodyBack) {
+  const TriangleMesh body = hollow_sphere(1, 0.2, 2);
+  const CutResult result = cut_silently(body, random_regions(body, 4, 1, 1));
+  ASSERT_EQ(result.status, CutStatus::ok) << result.detail;
+  ASSERT_EQ(result.fragments.size(), 1u);
+  EXPECT_EQ(result.fragments[0].mesh.faces.size(), body.faces.size());
+  std::vector<int> sources = result.fragments[0].source_face;
+  std::sort(sources.begin(), sources.end());
+  for (std::size_t i = 0; i < sources.size(); ++i) EXPECT_EQ(sources[i], static_cast<int>(i));
+}
+
+TEST(Cut, RegionsBesideTheBodyGiveNothing) {
+  const TriangleMesh body = sphere(1, 2);
+  const CutResult result = cut_silently(body, halves(body, 0, 1.5));
+  ASSERT_EQ(result.status, CutStatus::ok) << result.detail;
+  ASSERT_EQ(result.fragments.size(), 1u);
+  EXPECT_EQ(result.fragments[0].region, 0);
+}
+
+TEST(Cut, ARegionMayGiveSeveralFragments) {
+  const TriangleMesh body = torus(1, 0.3, 32, 12);
+  // Three slabs across the ring: the middle one, |x| < 1/2, holds two separate arms.
+  const CutResult result =
+      cut_silently(body, voronoi_regions(padded(bounds(body)), {{-1, 0.001, 0}, {0, 0.002, 0}, {1, 0, 0}}, {0, 1, 2}));
+  ASSERT_EQ(result.status, CutStatus::ok) << result.detail;
+  std::map<int, int> count;
+  for (const Fragment& fragment : result.fragments) ++count[fragment.region];
+  EXPECT_EQ(count, (std::map<int, int>{{0, 1}, {1, 2}, {2, 1}}));
+}
+
+TEST(Cut, AVoidStaysInTheFragmentAroundIt) {
+  const TriangleMesh body = hollow_sphere(1, 0.7, 2);
+  const CutResult result = cut_silently(body, halves(body, 1, 0.6));
+  ASSERT_EQ(result.status, CutStatus::ok) << result.detail;
+  ASSERT_EQ(result.fragments.size(), 2u);
+  EXPECT_EQ(inspect(result.fragments[0].mesh).shells, 2);
+  EXPECT_EQ(inspect(result.fragments[1].mesh).shells, 1);
+  expect_solids(result);
+}
+
+TEST(Cut, CracksMayLieInFacesOfTheBody) {
+  const TriangleMesh body = l_shape();
+  for (const int axis : {0, 1}) {
+    const CutResult result = cut_silently(body, halves(body, axis, 0));
+    ASSERT_EQ(result.status, CutStatus::ok) << result.detail;
+    EXPECT_EQ(result.nudges, 0);
+    ASSERT_EQ(result.fragments.size(), 2u);
+    EXPECT_NEAR(mass_properties(result.fragments[0].mesh).volume, 2, 2 * kConserved);
+    EXPECT_NEAR(mass_properties(result.fragments[1].mesh).volume, 1, kConserved);
+    expect_solids(result);
+  }
+}
+
+TEST(Cut, CracksMayPassThroughVerticesAndEdges) {
+  for (const TriangleMesh& body : {box({1, 1, 1}), sphere(1, 2), torus(1, 0.3, 32, 12)}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const CutResult result = cut_silently(body, halves(body, axis, 0));
+      ASSERT_EQ(result.status, CutStatus::ok) << result.detail;
+      expect_solids(result);
+      expect_conserved(body, result);
+    }
+  }
+}
+
+// The boxes between planes at `ticks` on every axis; each is a region.
+RegionBoundary lattice_regions(const std::vector<double>& ticks) {
+  const int points = static_cast<int>(ticks.size()), cells = points - 1;
+  RegionBoundary result;
+  result.region_count = cells * cells * cells;
+  for (int i = 0; i < points * points * points; ++i) {
+    result.vertices.push_back({ticks[i % points], ticks[i / points % points], ticks[i / points / points]});
+  }
+  const auto cell = [&](const std::array<int, 3>& at) {
+    const bool exists = std::all_of(at.begin(), at.end(), [&](int k) { return k >= 0 && k < cells; });
+    return exists ? at[0] + cells * (at[1] + cells * at[2]) : -1;
+  };
+  for (int i = 0; i < points * points * points; ++i) {
+    const std::array<int, 3> corner = {i % points, i / points % points, i / points / points};
+    const std::array<int, 3> step = {1, points, points * points};
+    for (int axis = 0; axis < 3; ++axis) {
+      const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+      if (corner[u] == cells || corner[v] == cells) continue;
+      std::array<int, 3> below = corner;
+      --below[axis];
+      RegionBoundary::Face face{{i, i + step[u], i + step[u] + step[v], i + step[v]}, cell(below), cell(corner)};
+      if (face.inside < 0) std::swap(face.inside, face.outside), std::reverse(face.loop.begin(), face.loop.end());
+      result.faces.push_back(face);
+    }
+  }
+  return result;
+}
+
+// Eight cells meet at every vertex and four at every edge; cracks lie in faces of the bodies and pass through edges.
+TEST(Cut, CellsMayBeALattice) {
+  const RegionBoundary regions = lattice_regions({-2, -0.5, 0, 0.5, 2});
+  for (const TriangleMesh& body : {box({1.5, 1.5, 1.5}), box({1, 1, 1}), l_shape(), sphere(0.8, 2)}) {
+    const CutResult result = cut_silently(body, regions);
+    ASSERT_EQ(result.status, CutStatus::ok) << result.detail;
+    expect_solids(result);
+    expect_conserved(body, result);
+  }
+}
+
+TEST(Cut, IsDeterministicAndOrdered) {
+  const TriangleMesh body = torus(1, 0.3, 32, 12);
+  const RegionBoundary regions = random_regions(body, 20, 10, 5);
+  const CutResult a = cut_silently(body, regions), b = cut_silently(body, regions);
+  ASSERT_EQ(a.status, CutStatus::ok);
+  EXPECT_TRUE(same(a, b));
+  for (std::size_t i = 1; i < a.fragments.size(); ++i) EXPECT_LE(a.fragments[i - 1].region, a.fragments[i].region);
+}
+
+TEST(Cut, RefusesBrokenBodies) {
+  const TriangleMesh good = sphere(1, 2);
+  const RegionBoundary regions = random_regions(good, 6, 3, 1);
+  TriangleMesh open = good, inverted = good, duplicated = good, missing = good, crossing = good;
+  open.faces.pop_back();
+  for (Triangle& face : inverted.faces) std::swap(face[1], face[2]);
+  duplicated.vertices[duplicated.faces[0][0]] = duplicated.vertices[duplicated.faces[0][1]];
+  missing.faces[3][1] = 100000;
+  crossing.vertices[0] *= -1.5;
+  for (const TriangleMesh& body : {open, inverted, duplicated, missing, crossing, TriangleMesh{}}) {
+    const CutResult result = cut_silently(body, regions);
+    EXPECT_EQ(result.status, CutStatus::bad_input) << result.detail;
+    EXPECT_FALSE(result.detail.empty());
+    EXPECT_TRUE(result.fragments.empty());
+  }
+}
+
+TEST(Cut, RefusesBrokenRegions) {
+  const TriangleMesh body = sphere(1, 2);
+  const RegionBoundary good = random_regions(body, 6, 3, 1);
+  RegionBoundary open = good, unknown = good, flat = good, coincident = good;
+  open.faces.pop_back();
+  unknown.faces[0].inside = 17;
+  flat.faces[0].loop.resize(2);
+  coincident.vertices[good.faces[0].loop[0]] = good.vertices[good.faces[0].loop[1]];
+  for (const RegionBoundary& regions : {open, unknown, flat, coincident}) {
+    const CutResult result = cut_silently(body, regions);
+    EXPECT_EQ(result.status, CutStatus::bad_input);
+    EXPECT_FALSE(result.detail.empty());
+    EXPECT_TRUE(result.fragments.empty());
+  }
+}
+
+TEST(Cut, ReportsLostVolume) {
+  const TriangleMesh body = sphere(1, 2);
+  const Box half_space(Vec3(-2, -2, -2), Vec3(2, 2, 0.3));
+  const CutResult result = cut_silently(body, voronoi_regions(half_space, {{-1, 0, 0}, {1, 0, 0}}, {0, 1}));
+  EXPECT_EQ(result.status, CutStatus::volume_lost);
+  EXPECT_TRUE(result.fragments.empty());
+  EXPECT_GT(result.volume_error, 0.1);
+}
+
+TEST(Cut, StopsWhenAsked) {
+  class Stopped final : public Progress {
+    void report(std::string_view, double) override {}
+    bool cancelled() const override { return true; }
+  } progress;
+  const TriangleMesh body = sphere(1, 2);
+  EXPECT_THROW(cut(body, random_regions(body, 6, 3, 1), {}, progress), Error);
+}
+
+}  // namespace
+}  // namespace sunder::geometry
