@@ -34,8 +34,8 @@ class CrackFronts {
 
   /// What the fronts with sequence number >= `first` say about a candidate. Rules, with a the distance off the front
   /// particle's crack plane and b the distance along it, for fronts within R_s whose normals are parallel enough:
-  /// beside (a > b tan(ahead)): a <= w_b and b <= h fills, otherwise shields; ahead within reach: advances once t - t_q
-  /// >= distance / speed.
+  /// beside (a > b tan(ahead)): a <= w_b and b <= h fills, a > w_b shields; ahead within reach: advances once t - t_q
+  /// >= distance / speed. Only what the verdict needs is looked up.
   struct Sight {
     bool fills = false, shields = false, ahead = false, early = false;
     Sight operator|(const Sight& o) const {
@@ -55,10 +55,23 @@ class CrackFronts {
     double time;
     int number;
   };
+  struct Query {
+    Vec3 position, normal;
+    double time;
+    int first;
+  };
   std::array<int, 3> bin(const Vec3& x) const;
+  /// What one front says that is within R_s and parallel enough.
+  Sight sight_of(const Front& front, const Query& query) const;
+  /// Adds what the fronts of one bin say; true as soon as that is enough.
+  template <class Enough>
+  bool scan_bin(const std::vector<Front>& fronts, const Query& query, const Enough& enough, Sight& sight) const;
+  /// What the fronts in the bins within `distance` say, until that is enough.
+  template <class Enough>
+  Sight scan(const Query& query, double distance, const Enough& enough) const;
 
   Vec3 origin_;
-  double radius_, cell_size_, filler_width_, reach_, speed_, tan_ahead_, cos_parallel_;
+  double radius_, bin_size_, cell_size_, filler_width_, reach_, near_, speed_, tan_ahead_, cos_parallel_;
   std::array<int, 3> size_;
   std::vector<std::vector<Front>> bins_;
   int count_ = 0;

@@ -19,12 +19,18 @@ struct QuadraticStencil {
 /// Its inverse is the factor of MLS gradients.
 constexpr double quadratic_moment = 0.25;
 
+/// Lowest node of the stencil of `point` [cells].
+inline std::array<int, 3> quadratic_base(const Vec3& point) {
+  const Eigen::Array3d floor = (point.array() - 0.5).floor();
+  return {static_cast<int>(floor[0]), static_cast<int>(floor[1]), static_cast<int>(floor[2])};
+}
+
 /// `point` in cells. Fan (2024) eq. 2.10; the branches of Lyu (2021) eq. 3.3 belong to another argument and sum to 1.5.
 inline QuadraticStencil quadratic_stencil(const Vec3& point) {
   QuadraticStencil s;
+  s.base = quadratic_base(point);
   for (std::size_t a = 0; a < 3; ++a) {
     const double x = point[static_cast<Eigen::Index>(a)];
-    s.base[a] = static_cast<int>(std::floor(x - 0.5));
     const double f = x - s.base[a];
     s.offset[a] = f;
     s.weight[a] = {0.5 * (1.5 - f) * (1.5 - f), 0.75 - (f - 1) * (f - 1), 0.5 * (f - 0.5) * (f - 0.5)};

@@ -36,13 +36,6 @@ PrincipalStress principal_stress(const Mat3& cauchy_stress) {
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
-double principal_stress_bound(const Mat3& s) {
-  const double mean = s.trace() / 3;
-  const double x = s(0, 0) - mean, y = s(1, 1) - mean, z = s(2, 2) - mean;
-  const double j2 = 0.5 * (x * x + y * y + z * z) + s(0, 1) * s(0, 1) + s(0, 2) * s(0, 2) + s(1, 2) * s(1, 2);
-  return mean + 2 * std::sqrt(j2 / 3);
-}
-
 Mat3 damaged_stress(const PrincipalStress& effective, double damage) {
   Vec3 value = effective.value;
   for (int k = 0; k < 3; ++k)

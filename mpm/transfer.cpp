@@ -11,8 +11,12 @@
 namespace sunder::mpm {
 namespace {
 
-QuadraticStencil stencil_of(const Particle& p, const Grid& grid) {
+inline QuadraticStencil stencil_of(const Particle& p, const Grid& grid) {
   return quadratic_stencil(grid.to_cells(p.position()));
+}
+
+inline std::array<int, 3> base_of(const Particle& p, const Grid& grid) {
+  return quadratic_base(grid.to_cells(p.position()));
 }
 
 Node momentum_column(const Mat3& affine, int column, double h) {
@@ -60,7 +64,7 @@ void gather(const Grid& grid, double time_step, Particle& p) {
   p.affine_velocity.col(1) = inverse_moment * cy.head<3>();
   p.affine_velocity.col(2) = inverse_moment * cz.head<3>();
   const Mat3 increment = time_step * p.affine_velocity;
-  p.displacement_gradient += (increment + increment * p.displacement_gradient).eval();
+  p.displacement_gradient += increment + Mat3(increment.lazyProduct(p.displacement_gradient));
   p.displacement += time_step * p.velocity;
 }
 
@@ -74,7 +78,7 @@ SlabOrder slab_order(const std::vector<Particle>& particles, const Grid& grid) {
   std::vector<std::size_t> key(particles.size());
   for (std::size_t p = 0; p < particles.size(); ++p) {
     if (particles[p].escaped) continue;
-    const auto base = stencil_of(particles[p], grid).base;
+    const auto base = base_of(particles[p], grid);
     key[p] = grid.index(base[0], base[1], base[2]);
     slabs.order.push_back(static_cast<int>(p));
   }
@@ -82,7 +86,7 @@ SlabOrder slab_order(const std::vector<Particle>& particles, const Grid& grid) {
                    [&](int a, int b) { return key[static_cast<std::size_t>(a)] < key[static_cast<std::size_t>(b)]; });
   slabs.begin.assign(slab_count + 1, 0);
   for (int p : slabs.order) {
-    const auto base = stencil_of(particles[static_cast<std::size_t>(p)], grid).base;
+    const auto base = base_of(particles[static_cast<std::size_t>(p)], grid);
     ++slabs.begin[static_cast<std::size_t>(slab_of(base)) + 1];
   }
   std::partial_sum(slabs.begin.begin(), slabs.begin.end(), slabs.begin.begin());
@@ -107,7 +111,7 @@ bool grid_to_particle(const Grid& grid, const SlabOrder& slabs, double time_step
     for (int at = slabs.begin[s]; at < slabs.begin[s + 1]; ++at) {
       Particle& p = particles[static_cast<std::size_t>(slabs.order[static_cast<std::size_t>(at)])];
       gather(grid, time_step, p);
-      const auto base = stencil_of(p, grid).base;
+      const auto base = base_of(p, grid);
       if (!grid.holds(base) || slab_of(base) != slab) in_place.store(false, std::memory_order_relaxed);
     }
   });
