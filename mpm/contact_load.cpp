@@ -10,7 +10,7 @@ double reduced_mass(double body_mass, double partner_mass) {
 }
 
 double impact_duration(double m, double v, const ContactPair& pair) {
-  // The elastic duration is an upper bound for the time to the turn: crushing only lowers the force.
+  // The elastic duration is the shortest: crushing only lowers the force and stretches the way to the turn.
   const double dt = hertz_duration(m, v, pair) / 4000;
   HertzContact contact(pair);
   double d = 0, speed = v, time = 0;
@@ -79,7 +79,7 @@ double ContactLoad::evaluate(const std::vector<Particle>& particles, const Vec3&
 }
 
 Vec3 ContactLoad::apply(const std::vector<Particle>& particles, double time_step, Grid& grid) {
-  if (force_ <= 0) return Vec3::Zero();
+  if (force_ <= 0 || !attached_) return Vec3::Zero();
   const double impulse = force_ * time_step;
   patch_.push(particles, impulse, grid);
   result_.impulse += impulse;
@@ -95,11 +95,14 @@ void ContactLoad::widen_patch(const std::vector<Particle>& particles) {
 }
 
 void ContactLoad::drop_escaped(const std::vector<Particle>& particles) {
-  attached_ = attached_ && patch_.drop_escaped(particles);
   if (!attached_) return;
-  const double before = indentation_, indentation = patch_.indentation(particles);
-  gap_ += before - indentation;
-  indentation_ = indentation;
+  const double before = patch_.indentation(particles);
+  attached_ = patch_.drop_escaped(particles);
+  if (!attached_) return;
+  // The patch that remains stands elsewhere: neither the gap nor the work may notice.
+  const double shift = patch_.indentation(particles) - before;
+  gap_ -= shift;
+  indentation_ += shift;
 }
 
 }  // namespace sunder::mpm

@@ -28,19 +28,24 @@ void require(bool holds, const std::string& what) {
   if (!holds) throw Error(ErrorKind::usage, what);
 }
 
+bool positive(double x) { return x > 0 && std::isfinite(x); }
+
 void check(const std::vector<Vec3>& points, double volume, const Material& m, const std::vector<Load>& loads,
            const std::vector<Partner>& partners, const SolveSettings& settings) {
-  require(!points.empty() && volume > 0 && std::isfinite(volume), "a solve needs points and a positive volume");
-  require(m.density > 0 && m.youngs_modulus > 0 && m.tensile_strength > 0 && m.fracture_energy > 0,
-          "density, Young's modulus, tensile strength and fracture energy must be positive");
+  require(!points.empty() && positive(volume), "a solve needs points and a positive volume");
+  for (const Vec3& x : points) require(x.allFinite(), "a point is not finite");
+  require(
+      positive(m.density) && positive(m.youngs_modulus) && positive(m.tensile_strength) && positive(m.fracture_energy),
+      "density, Young's modulus, tensile strength and fracture energy must be positive");
   require(m.poisson_ratio > -1 && m.poisson_ratio < 0.5, "Poisson's ratio must lie in (-1, 0.5)");
   require(settings.cfl > 0 && settings.cfl <= 1, "cfl must lie in (0, 1]: beyond 1 the explicit step is unstable");
   require(!loads.empty(), "a solve needs a load");
   for (const Load& load : loads) {
-    require(load.approach_speed > 0 && std::isfinite(load.approach_speed), "approach_speed must be positive");
-    require(load.pair.effective_radius > 0 && std::isfinite(load.pair.effective_radius),
-            "effective_radius must be positive");
-    require(load.pair.effective_modulus > 0, "effective_modulus must be positive");
+    require(load.point.allFinite() && std::abs(load.outward.norm() - 1) < 1e-6, "outward must be a unit vector");
+    require(positive(load.approach_speed), "approach_speed must be positive");
+    require(positive(load.pair.effective_radius), "effective_radius must be positive");
+    require(positive(load.pair.effective_modulus), "effective_modulus must be positive");
+    require(load.pair.contact_pressure > 0, "contact_pressure must be positive");
     require(load.partner >= 0 && load.partner < static_cast<int>(partners.size()),
             "a load names a partner that is not there");
     require(partners[static_cast<std::size_t>(load.partner)].mass > 0, "a partner's mass must be positive");
@@ -89,7 +94,7 @@ class Solver {
   double particle_volume_, particle_mass_, body_mass_, cell_size_, wave_speed_, time_step_, transit_, viscosity_;
   Softening propagation_;
   std::vector<Particle> particles_;
-  Box followed_;  ///< where the grid follows particles
+  Box followed_;  ///< where the grid follows particles, about the centre of mass
   Grid grid_;
   SlabOrder slabs_;
   bool in_place_ = false;
@@ -99,7 +104,7 @@ class Solver {
   std::vector<std::vector<Candidate>> candidates_;  ///< by chunk of particles
   std::atomic<bool> failure_ = false, lost_ = false;
   std::atomic<long> resets_ = 0;
-  Vec3 impulse_ = Vec3::Zero();
+  Vec3 impulse_ = Vec3::Zero(), travel_ = Vec3::Zero();  ///< of the body as a whole
   double time_ = 0, last_failure_ = 0, contact_duration_ = 0, latest_end_ = 0, work_ = 0, impact_energy_ = 0;
   long steps_ = 0, nuclei_ = 0;
 };
@@ -197,14 +202,16 @@ void Solver::set_strengths(const std::vector<Vec3>& points) {
 void Solver::sort_particles() {
   bool escape = false;
   for (Particle& p : particles_)
-    if (!p.escaped && !followed_.contains(p.position())) {
+    if (!p.escaped && !followed_.contains(p.position() - travel_)) {
       p.escaped = escape = true;
       p.damage = 1;
       if (p.damage_time < 0) p.damage_time = time_;
     }
-  if (escape)
+  if (escape) {
+    require_finite();  // what is not a number is nowhere either
     for (ContactLoad& load : loads_) load.drop_escaped(particles_);
-  grid_ = Grid(box_of(particles_, false), cell_size_, 4, grid_.origin());
+  }
+  if (const Box box = box_of(particles_, false); !box.isEmpty()) grid_ = Grid(box, cell_size_, 4, grid_.origin());
   slabs_ = slab_order(particles_, grid_);
 }
 
@@ -311,6 +318,7 @@ void Solver::push() {
     if (std::isfinite(partners_[partner].mass)) motion.velocity += impulse / partners_[partner].mass;
   }
   for (PartnerMotion& motion : partner_motion_) motion.displacement += time_step_ * motion.velocity;
+  travel_ += time_step_ / body_mass_ * impulse_;
 }
 
 /// Work of the loads less the energy of the body's translation.
@@ -361,8 +369,7 @@ SolveResult Solver::result() const {
   for (const Particle& p : particles_) {
     const Mat3& c = p.affine_velocity;
     const Vec3 spin(c(2, 1) - c(1, 2), c(0, 2) - c(2, 0), c(1, 0) - c(0, 1));
-    r.particles[static_cast<std::size_t>(p.id)] = {
-        p.displacement, p.velocity, p.escaped ? Vec3(Vec3::Zero()) : Vec3(moment * spin), p.damage, p.damage_time};
+    r.particles[static_cast<std::size_t>(p.id)] = {p.displacement, p.velocity, moment * spin, p.damage, p.damage_time};
     dissipated[static_cast<std::size_t>(p.id)] = p.dissipated * particle_volume_;
     r.damaged_share += p.damage >= cracked;
   }
