@@ -3,18 +3,15 @@
 #include <cmath>
 #include <string>
 
-#include "core/random.h"
-#include "crack/boundary.h"
-#include "crack/cells.h"
 #include "crack/classify.h"
 #include "crack/detail/bins.h"
 #include "crack/islands.h"
+#include "crack/medial.h"
 
 namespace sunder::crack {
 
 namespace {
 
-constexpr int most_tries = 8;
 constexpr double margin = 0.1;           // of the domain's diagonal, on every side of it
 constexpr double shortest_edge = 1e-10;  // of the domain's diagonal: what geometry::cut can tell from nothing
 constexpr double closing_gain = 1.02;    // neck closing roughens surfaces: it has to make more pieces by so much
@@ -68,8 +65,8 @@ struct Choice {
 };
 
 /// With and without neck closing, whichever makes more pieces.
-Choice choose_partition(const DamageField& field, const std::vector<char>& sound, const Settings& settings) {
-  const LinkGraph links = link_graph(field.points, settings.link * field.spacing);
+Choice choose_partition(const DamageField& field, const LinkGraph& links, const std::vector<char>& sound,
+                        const Settings& settings) {
   const int smallest =
       std::max(settings.smallest_points,
                static_cast<int>(std::ceil(settings.smallest_share * static_cast<double>(field.points.size()))));
@@ -80,63 +77,57 @@ Choice choose_partition(const DamageField& field, const std::vector<char>& sound
   return closed.partition.effective_count > closing_gain * plain.partition.effective_count ? closed : plain;
 }
 
-/// Island points, and the points astray: they keep another limb's cells off.
-std::vector<Site> choose_sites(const DamageField& field, const Partition& pieces) {
+/// The points that at most `hops` links part from one that is on no island.
+std::vector<char> near_border(const LinkGraph& links, const Partition& pieces, int hops) {
+  std::vector<char> near(pieces.is_island.size());
+  for (std::size_t i = 0; i < near.size(); ++i) near[i] = !pieces.is_island[i];
+  for (int hop = 0; hop < hops; ++hop)
+    for (const std::vector<char> before = near; int i : indices_of(before, true))
+      for (int e = links.start[i]; e < links.start[i + 1]; ++e) near[links.neighbour[e]] = 1;
+  return near;
+}
+
+/// Island points, and the points astray: they keep another limb's cells off. Of a single piece only those that partial
+/// cracks need: the points beside damage, and one layer behind them that keeps cells from reaching through the body.
+std::vector<Site> choose_sites(const DamageField& field, const LinkGraph& links, const Partition& pieces) {
   std::vector<Site> sites;
   if (pieces.count == 0) return sites;
+  const std::vector<char> near = near_border(links, pieces, 2);
   for (int i = 0; i < static_cast<int>(field.points.size()); ++i)
-    if (pieces.is_island[i] || pieces.is_astray[i]) sites.push_back({field.points[i], pieces.piece[i], i});
+    if ((pieces.is_island[i] || pieces.is_astray[i]) && (pieces.count > 1 || near[i]))
+      sites.push_back({field.points[i], pieces.piece[i], i});
   return sites;
 }
 
-/// Every site displaced at random by up to `size` [m] along each axis, by its point's number.
-std::vector<Site> jittered(std::vector<Site> sites, double size, std::uint64_t seed, int attempt) {
-  for (Site& site : sites)
-    for (int axis = 0; axis < 3; ++axis) {
-      const std::uint64_t stream = 3 * static_cast<std::uint64_t>(attempt) + axis;
-      site.position[axis] += size * (2 * random_unit(seed, stream, site.point) - 1);
-    }
-  return sites;
-}
-
-struct Cut {
-  CellFaces cells;
-  geometry::RegionBoundary boundary;
-  int retries = 0;
-};
-
-/// Jitters until the cells fit together.
-Cut cut_cells(const std::vector<Site>& sites, const CellRequest& request, int pieces, double jitter, std::uint64_t seed,
-              Progress& progress) {
-  for (int attempt = 0; attempt < most_tries; ++attempt) {
-    progress.checkpoint("extract", 0.3 + 0.5 * attempt / most_tries);
-    std::optional<CellFaces> cells = cell_faces(jittered(sites, jitter, seed, attempt), request);
-    if (!cells) continue;
-    geometry::RegionBoundary boundary;
-    if (request.pieces) boundary = region_boundary(sites, *cells, pieces);
-    if (is_closed(boundary)) return {std::move(*cells), std::move(boundary), attempt};
+/// Two sites of one piece that no sound point links lie on two sides of whatever is between them.
+bool linked_by_island(const LinkGraph& links, const Partition& pieces, int a, int b) {
+  for (int i = links.start[a], j = links.start[b]; i < links.start[a + 1] && j < links.start[b + 1];) {
+    const int from_a = links.neighbour[i], from_b = links.neighbour[j];
+    if (from_a == from_b && pieces.is_island[from_a]) return true;
+    i += from_a <= from_b;
+    j += from_b <= from_a;
   }
-  throw Error(ErrorKind::internal, "crack: Voronoi cells of " + std::to_string(sites.size()) +
-                                       " points do not fit together after " + std::to_string(most_tries) +
-                                       " tries; give crack points a larger jitter");
+  return false;
 }
 
-std::vector<CrackFace> crack_faces(const DamageField& field, const std::vector<Site>& sites,
-                                   const std::vector<char>& sound, const Cut& cut) {
-  const DamageBetween damage_between(field.points, indices_of(sound, false), field.spacing);
+std::vector<CrackFace> crack_faces(const DamageField& field, const std::vector<int>& damaged, const LinkGraph& links,
+                                   const Partition& pieces, const std::vector<Site>& sites, const CellFaces& cells) {
+  const DamageBetween damage_between(field.points, damaged, field.spacing);
   std::vector<CrackFace> faces;
   const auto has_damage = [&](int a, int b) { return damage_between(sites[a].position, sites[b].position); };
-  for (const CellFace& face : cut.cells.faces) {
+  for (const CellFace& face : cells.faces) {
     if (face.neighbour < 0) continue;
     CrackFace& crack = faces.emplace_back();
-    for (int v : face.loop) crack.polygon.push_back(cut.cells.vertices[v]);
+    for (int v : face.loop) crack.polygon.push_back(cells.vertices[v]);
     crack.kind = has_damage(face.site, face.neighbour) ? FaceKind::interior : FaceKind::extension;
     crack.point_a = sites[face.site].point;
     crack.point_b = sites[face.neighbour].point;
   }
-  for (const InnerFace& face : cut.cells.inner)
-    if (has_damage(face.site, face.neighbour))
-      faces.push_back({face.polygon, FaceKind::partial, sites[face.site].point, sites[face.neighbour].point});
+  for (const InnerFace& face : cells.inner) {
+    const int a = sites[face.site].point, b = sites[face.neighbour].point;
+    if (!linked_by_island(links, pieces, a, b) && has_damage(face.site, face.neighbour))
+      faces.push_back({face.polygon, FaceKind::partial, a, b});
+  }
   return faces;
 }
 
@@ -144,6 +135,16 @@ Box enlarged(const DamageField& field, Box domain) {
   for (const Vec3& x : field.points) domain.extend(x);
   const double by = margin * domain.diagonal().norm();
   return {domain.min() - Vec3::Constant(by), domain.max() + Vec3::Constant(by)};
+}
+
+MedialRequest medial_request(const DamageField& field, const Box& domain, const Settings& settings, int pieces) {
+  const double diagonal = domain.diagonal().norm();
+  const CellRequest cells{.box = enlarged(field, domain),
+                          .unit = field.spacing,
+                          .shortest_edge = shortest_edge * diagonal,
+                          .inner_distance = settings.link * field.spacing,
+                          .pieces = pieces > 1};
+  return {.cells = cells, .pieces = pieces, .jitter = settings.jitter * diagonal, .seed = settings.seed};
 }
 
 }  // namespace
@@ -159,7 +160,8 @@ Extraction extract(const DamageField& field, const Box& domain, const Settings& 
   result.lump_share = lump_share(field, sound);
 
   progress.checkpoint("extract", 0.1);
-  const auto [pieces, neck_radius] = choose_partition(field, sound, settings);
+  const LinkGraph links = link_graph(field.points, settings.link * field.spacing);
+  const auto [pieces, neck_radius] = choose_partition(field, links, sound, settings);
   result.neck_radius_used = neck_radius;
   if (pieces.count > 1) {
     result.region_count = pieces.count;
@@ -167,17 +169,11 @@ Extraction extract(const DamageField& field, const Box& domain, const Settings& 
     result.effective_count = pieces.effective_count;
   }
 
-  const std::vector<Site> sites = choose_sites(field, pieces);
-  const double diagonal = domain.diagonal().norm();
-  const CellRequest request{.box = enlarged(field, domain),
-                            .unit = field.spacing,
-                            .shortest_edge = shortest_edge * diagonal,
-                            .inner_distance = settings.link * field.spacing,
-                            .pieces = pieces.count > 1};
-  Cut cut = cut_cells(sites, request, pieces.count, settings.jitter * diagonal, settings.seed, progress);
-  result.retries = cut.retries;
-  result.faces = crack_faces(field, sites, sound, cut);
-  result.boundary = std::move(cut.boundary);
+  const std::vector<Site> sites = choose_sites(field, links, pieces);
+  Medial medial = medial_faces(sites, medial_request(field, domain, settings, pieces.count), progress);
+  result.retries = medial.retries;
+  result.faces = crack_faces(field, damaged, links, pieces, sites, medial.cells);
+  result.boundary = std::move(medial.boundary);
   progress.report("extract", 1);
   return result;
 }

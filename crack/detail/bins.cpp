@@ -24,11 +24,9 @@ PointBins::PointBins(const std::vector<Vec3>& points, double width)
 
 PointBins::PointBins(const std::vector<Vec3>& points, const std::vector<int>& indices, double width) : width_(width) {
   if (indices.empty()) return;
-  Box box;
-  for (int i : indices) box.extend(points[i]);
-  origin_ = box.min();
-  while (bin_count(box.sizes(), width_) > bins_per_point * static_cast<double>(indices.size()) + 4096) width_ *= 1.5;
-  for (int axis = 0; axis < 3; ++axis) size_[axis] = static_cast<int>(box.sizes()[axis] / width_) + 1;
+  for (int i : indices) box_.extend(points[i]);
+  while (bin_count(box_.sizes(), width_) > bins_per_point * static_cast<double>(indices.size()) + 4096) width_ *= 1.5;
+  for (int axis = 0; axis < 3; ++axis) size_[axis] = static_cast<int>(box_.sizes()[axis] / width_) + 1;
 
   std::vector<int> bin(indices.size());
   start_.assign(static_cast<std::size_t>(size_[0]) * size_[1] * size_[2] + 1, 0);
@@ -46,7 +44,7 @@ PointBins::PointBins(const std::vector<Vec3>& points, const std::vector<int>& in
 PointBins::Cell PointBins::cell(const Vec3& x) const {
   Cell c;
   for (int axis = 0; axis < 3; ++axis) {
-    const double position = std::floor((x[axis] - origin_[axis]) / width_);
+    const double position = std::floor((x[axis] - box_.min()[axis]) / width_);
     c[axis] = static_cast<int>(std::clamp(position, 0.0, static_cast<double>(size_[axis] - 1)));
   }
   return c;
@@ -86,13 +84,15 @@ void PointBins::scan_ring(const Vec3& x, const Cell& home, int ring, Nearest& be
     }
 }
 
-PointBins::Nearest PointBins::nearest(const Vec3& x) const {
-  Nearest best;
+PointBins::Nearest PointBins::nearest(const Vec3& x, double limit) const {
+  Nearest best{-1, limit};
   if (entries_.empty()) return best;
   const Cell home = cell(x);
+  const double outside = box_.exteriorDistance(x);
   const int rings = std::max({size_[0], size_[1], size_[2]});
-  // What lies in ring r + 1 or beyond is farther than r bins.
-  for (int ring = 0; ring < rings && best.distance >= (ring - 1) * width_; ++ring) scan_ring(x, home, ring, best);
+  // What lies in a ring not yet seen is farther away than the whole bins between.
+  const auto beyond = [&](int ring) { return std::hypot(outside, std::max(0, ring - 1) * width_); };
+  for (int ring = 0; ring < rings && beyond(ring) <= best.distance; ++ring) scan_ring(x, home, ring, best);
   return best;
 }
 

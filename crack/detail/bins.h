@@ -39,8 +39,8 @@ class PointBins {
     double distance = std::numeric_limits<double>::infinity();
   };
 
-  /// The nearest point, the lowest index among equals; index -1 if there is none.
-  Nearest nearest(const Vec3& x) const;
+  /// The nearest point closer than `limit`, the lowest index among equals; index -1 if there is none.
+  Nearest nearest(const Vec3& x, double limit = std::numeric_limits<double>::infinity()) const;
 
  private:
   using Cell = std::array<int, 3>;
@@ -55,7 +55,7 @@ class PointBins {
   void scan_row(const Vec3& x, int j, int k, int first, int last, Nearest& best) const;
   void scan_ring(const Vec3& x, const Cell& home, int ring, Nearest& best) const;
 
-  Vec3 origin_ = Vec3::Zero();
+  Box box_;
   double width_ = 1;
   Cell size_ = {0, 0, 0};
   std::vector<int> start_ = {0};  // per bin, and one more: its first entry
