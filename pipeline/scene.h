@@ -20,27 +20,27 @@ enum class Anchor { base, centre, origin };
 
 /// A mesh by catalogue name, as a primitive with its parameters, or as a file.
 struct MeshChoice {
-  std::string name;                      ///< as written in the scene
-  std::filesystem::path file;            ///< catalogue file or the path given; empty for primitives
-  geometry::LoadSettings load;           ///< unit and up axis
-  Vec3 size = Vec3::Zero();              ///< extents of a primitive, or of a file mesh stretched to them; zero: not given
-  double height = 0;                     ///< uniform scale to this height [m]; 0: not given
-  double wall = 0;                       ///< wall thickness of hollow primitives [m]; 0: their default
-  bool allow_repair = true;              ///< `repair = "off"` refuses what is not a solid
+  std::string name;             ///< as written in the scene
+  std::filesystem::path file;   ///< catalogue file or the path given; empty for primitives
+  geometry::LoadSettings load;  ///< unit and up axis
+  Vec3 size = Vec3::Zero();     ///< extents of a primitive, or of a file mesh stretched to them; zero: not given
+  double height = 0;            ///< uniform scale to this height [m]; 0: not given
+  double wall = 0;              ///< wall thickness of hollow primitives [m]; 0: their default
+  bool allow_repair = true;     ///< `repair = "off"` refuses what is not a solid
 };
 
 struct SceneBody {
   std::string name;
   MeshChoice mesh;
   Anchor anchor = Anchor::base;
-  Vec3 position = Vec3::Zero();          ///< of the anchor [m]
+  Vec3 position = Vec3::Zero();  ///< of the anchor [m]
   Quat orientation = Quat::Identity();
   Vec3 velocity = Vec3::Zero();          ///< [m/s]
   Vec3 angular_velocity = Vec3::Zero();  ///< [rad/s]
   Material material;
   bool breakable = true;
   rigid::Motion motion = rigid::Motion::dynamic;
-  int line = 0;                          ///< of the body in the scene file
+  int line = 0;  ///< of the body in the scene file
 };
 
 struct Ground {
@@ -49,18 +49,19 @@ struct Ground {
 };
 
 struct FractureSettings {
-  std::optional<double> minimum_impulse; ///< [N s]; not set: the impulse whose energy could just open one crack through the body
-  double minimum_volume = 0.02;          ///< bodies under this share of their original body's volume do not break
-  int maximum_fractures = 4;             ///< of one original body and all its fragments
-  double refracture_delay = 0.05;        ///< a fragment cannot break sooner after its birth [s]
+  std::optional<double>
+      minimum_impulse;  ///< [N s]; not set: the impulse whose energy could just open one crack through the body
+  double minimum_volume = 0.02;    ///< bodies under this share of their original body's volume do not break
+  int maximum_fractures = 4;       ///< of one original body and all its fragments
+  double refracture_delay = 0.05;  ///< a fragment cannot break sooner after its birth [s]
   DamageModel damage = DamageModel::front;
   LoadModel load = LoadModel::contact;
 };
 
 struct Effects {
-  bool fracture = true;                  ///< bodies may break at all
-  bool refracture = true;                ///< fragments may break again
-  bool strength_scatter = true;          ///< Weibull scatter of the strength
+  bool fracture = true;          ///< bodies may break at all
+  bool refracture = true;        ///< fragments may break again
+  bool strength_scatter = true;  ///< Weibull scatter of the strength
 };
 
 struct Outputs {
@@ -70,9 +71,9 @@ struct Outputs {
 
 struct Scene {
   std::filesystem::path file;
-  std::string name;                      ///< file name without extension
-  double duration = 2;                   ///< [s]
-  double frame_rate = 24;                ///< [1/s]
+  std::string name;        ///< file name without extension
+  double duration = 2;     ///< [s]
+  double frame_rate = 24;  ///< [1/s]
   int start_frame = 1;
   std::uint64_t seed = 1;
   Vec3 gravity = Vec3(0, -9.81, 0);
@@ -86,23 +87,24 @@ struct Scene {
 
 /// Where named things live.
 struct AssetPaths {
-  std::filesystem::path materials;       ///< assets/materials.toml
-  std::filesystem::path meshes;          ///< assets/meshes.toml: short name -> file in the cache
-  std::filesystem::path mesh_cache;      ///< folder that the bootstrap unpacked the demo meshes into
+  std::filesystem::path materials;   ///< assets/materials.toml
+  std::filesystem::path meshes;      ///< assets/meshes.toml: short name -> file in the cache
+  std::filesystem::path mesh_cache;  ///< folder that the bootstrap unpacked the demo meshes into
 };
 
 /// The repository's assets; environment variables SUNDER_ASSETS and SUNDER_MESHES override the folders.
 AssetPaths default_assets();
 
-/// Reads and checks a scene. Every unknown key, wrong type, missing name and impossible value is an Error (usage; mesh file missing: usage)
-/// "file:line: what is wrong; expected ...; did you mean ...?".
+/// Reads and checks a scene. Every unknown key, wrong type, missing name and impossible value is an Error (usage; mesh
+/// file missing: usage) "file:line: what is wrong; expected ...; did you mean ...?".
 Scene load_scene(const std::filesystem::path& file, const AssetPaths& assets = default_assets());
 
-/// Loads or generates the mesh, converts unit and up axis, repairs it (throws ErrorKind::mesh naming body and defect when that
-/// fails), scales it, and applies orientation and anchor: the result is in world coordinates at the start of the scene.
+/// Loads or generates the mesh, converts unit and up axis, repairs it (throws ErrorKind::mesh naming body and defect
+/// when that fails), scales it, and applies orientation and anchor: the result is in world coordinates at the start of
+/// the scene.
 struct BodyMesh {
   geometry::TriangleMesh mesh;
-  std::vector<std::string> repairs;      ///< what repair did; empty: nothing
+  std::vector<std::string> repairs;  ///< what repair did; empty: nothing
 };
 BodyMesh body_mesh(const SceneBody& body);
 
