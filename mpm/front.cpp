@@ -39,8 +39,8 @@ std::array<int, 3> CrackFronts::bin(const Vec3& x) const {
 
 void CrackFronts::add(const Vec3& position, const Vec3& normal, double time) {
   const auto at = bin(position);
-  bins_[static_cast<std::size_t>((at[0] * size_[1] + at[1]) * size_[2] + at[2])].push_back(
-      {position, normal, time, count_++});
+  all_.push_back({position, normal, time});
+  bins_[static_cast<std::size_t>((at[0] * size_[1] + at[1]) * size_[2] + at[2])].push_back(all_.back());
 }
 
 CrackFronts::Sight CrackFronts::sight_of(const Front& front, const Query& query) const {
@@ -58,13 +58,12 @@ CrackFronts::Sight CrackFronts::sight_of(const Front& front, const Query& query)
 }
 
 template <class Enough>
-bool CrackFronts::scan_bin(const std::vector<Front>& fronts, const Query& query, const Enough& enough,
-                           Sight& sight) const {
-  // Newest first: a bin is in the order of the numbers.
-  for (auto front = fronts.rbegin(); front != fronts.rend() && front->number >= query.first; ++front) {
-    if ((query.position - front->position).squaredNorm() > radius_ * radius_) continue;
-    if (std::abs(query.normal.dot(front->normal)) < cos_parallel_) continue;
-    sight = sight | sight_of(*front, query);
+bool CrackFronts::scan_list(std::span<const Front> fronts, const Query& query, const Enough& enough,
+                            Sight& sight) const {
+  for (const Front& front : fronts) {
+    if ((query.position - front.position).squaredNorm() > radius_ * radius_) continue;
+    if (std::abs(query.normal.dot(front.normal)) < cos_parallel_) continue;
+    sight = sight | sight_of(front, query);
     if (enough(sight)) return true;
   }
   return false;
@@ -78,15 +77,21 @@ CrackFronts::Sight CrackFronts::scan(const Query& query, double distance, const 
   for (int i = low[0]; i <= high[0]; ++i)
     for (int j = low[1]; j <= high[1]; ++j)
       for (int k = low[2]; k <= high[2]; ++k)
-        if (scan_bin(bins_[static_cast<std::size_t>((i * size_[1] + j) * size_[2] + k)], query, enough, sight))
+        if (scan_list(bins_[static_cast<std::size_t>((i * size_[1] + j) * size_[2] + k)], query, enough, sight))
           return sight;
   return sight;
 }
 
 CrackFronts::Sight CrackFronts::look(const Vec3& position, const Vec3& normal, double time, int first) const {
-  const Query query{position, normal, time, first};
+  const Query query{position, normal, time};
+  const auto fills = [](const Sight& s) { return s.fills; };
+  if (first > 0) {  // the few new ones: quicker without the bins
+    Sight sight;
+    scan_list(std::span(all_).subspan(static_cast<std::size_t>(first)), query, fills, sight);
+    return sight;
+  }
   // A front further than near_ can only shield, and one that shields is as good as many.
-  const Sight near = scan(query, near_, [](const Sight& s) { return s.fills; });
+  const Sight near = scan(query, near_, fills);
   if (near.fills || near.shields) return near;
   return near | scan(query, radius_, [](const Sight& s) { return s.shields; });
 }

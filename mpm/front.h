@@ -2,6 +2,7 @@
 /// Crack-front rules: a crack is a surface with a front of finite speed. A purely local strength criterion knows
 /// neither, and where the grid is much coarser than the material's process zone it turns the whole overstressed region
 /// to powder.
+#include <span>
 #include <vector>
 
 #include "core/types.h"
@@ -47,25 +48,20 @@ class CrackFronts {
   Sight look(const Vec3& position, const Vec3& normal, double time, int first = 0) const;
 
   void add(const Vec3& position, const Vec3& normal, double time);
-  int count() const { return count_; }
+  int count() const { return static_cast<int>(all_.size()); }
 
  private:
   struct Front {
     Vec3 position, normal;
     double time;
-    int number;
   };
-  struct Query {
-    Vec3 position, normal;
-    double time;
-    int first;
-  };
+  using Query = Front;
   std::array<int, 3> bin(const Vec3& x) const;
   /// What one front says that is within R_s and parallel enough.
   Sight sight_of(const Front& front, const Query& query) const;
-  /// Adds what the fronts of one bin say; true as soon as that is enough.
+  /// Adds what the fronts of a list say; true as soon as that is enough.
   template <class Enough>
-  bool scan_bin(const std::vector<Front>& fronts, const Query& query, const Enough& enough, Sight& sight) const;
+  bool scan_list(std::span<const Front> fronts, const Query& query, const Enough& enough, Sight& sight) const;
   /// What the fronts in the bins within `distance` say, until that is enough.
   template <class Enough>
   Sight scan(const Query& query, double distance, const Enough& enough) const;
@@ -74,7 +70,7 @@ class CrackFronts {
   double radius_, bin_size_, cell_size_, filler_width_, reach_, near_, speed_, tan_ahead_, cos_parallel_;
   std::array<int, 3> size_;
   std::vector<std::vector<Front>> bins_;
-  int count_ = 0;
+  std::vector<Front> all_;  ///< by sequence number
 };
 
 }  // namespace sunder::mpm
