@@ -104,6 +104,19 @@ TEST(ContactLoad, WorkIsTheIntegralOfForceOverIndentation) {
   EXPECT_NEAR(contact.work(), work, 1e-12 * work);
 }
 
+TEST(ContactLoad, ForgetsNothingElseWhenParticlesEscapeElsewhere) {
+  Case f;
+  ContactLoad contact = f.contact();
+  ASSERT_GT(contact.evaluate(f.free.particles, Vec3::Zero(), 1e-5, 1e-9), 0);
+  ContactLoad untouched = contact;
+  for (Particle& p : f.free.particles) p.displacement = Vec3(0, -5e-6, 0);
+  f.free.particles.front().escaped = true;  // a corner of the plate
+  contact.drop_escaped(f.free.particles);
+  EXPECT_EQ(contact.evaluate(f.free.particles, Vec3::Zero(), 1e-5, 1e-9),
+            untouched.evaluate(f.free.particles, Vec3::Zero(), 1e-5, 1e-9));
+  EXPECT_EQ(contact.work(), untouched.work());
+}
+
 TEST(ContactLoad, ForgetsWhatEscapedWithoutAJump) {
   Case f;
   ContactLoad contact = f.contact();
