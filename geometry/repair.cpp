@@ -55,8 +55,11 @@ void remesh(RepairResult& result, const TriangleMesh& source, const RepairSettin
     Steps steps = {remesh_step(voxel)};
     TriangleMesh mesh = without_bubbles(detail::remeshed(source, voxel), voxel);
     if (mesh.faces.empty()) break;
-    mesh = detail::outward(detail::without_crossings(closed_surface(mesh, steps), steps), steps);
-    const MeshReport report = inspect(mesh);
+    MeshReport report = inspect(mesh);
+    if (!report.is_solid()) {
+      mesh = detail::outward(closed_surface(mesh, steps), steps);
+      report = inspect(mesh);
+    }
     if (!report.is_solid()) continue;
     result.remeshed = true;
     return take(result, mesh, report, steps);

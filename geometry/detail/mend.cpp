@@ -3,6 +3,7 @@
 
 #include "geometry/detail/mend.h"
 
+#include <algorithm>
 #include <exception>
 #include <iterator>
 #include <map>
@@ -35,8 +36,9 @@ using FacePairs = std::vector<std::pair<Face, Face>>;
 
 // Holes with more edges are filled from their Delaunay triangulation only: the exhaustive search is cubic.
 constexpr std::size_t kCubicLimit = 300;
-// Patching crossings one by one is for a few of them: above this share of all faces the shape itself is in doubt.
-constexpr double kCrossingShare = 0.25;
+// Patching crossings one by one is slow and is for a few of them: beyond these bounds the shape itself is in doubt.
+constexpr double kCrossingShare = 0.25;  // of all faces
+constexpr std::size_t kMostCrossings = 2000;
 
 // CGAL reports a broken precondition or a dead end by an exception; the mesh that went in is then still the best there
 // is.
@@ -179,7 +181,8 @@ TriangleMesh without_crossings(const TriangleMesh& mesh, Steps& steps) {
       steps.push_back(step("united", count, "shell", "shells that cross"));
       return joined(shells.meshes);
     }
-    if (static_cast<double>(pairs.size()) > kCrossingShare * static_cast<double>(mesh.faces.size())) return mesh;
+    const double most = std::min<double>(kMostCrossings, kCrossingShare * mesh.faces.size());
+    if (pairs.size() > most) return mesh;
     if (!pmp::experimental::remove_self_intersections(surface)) return mesh;
     steps.push_back(step("removed", pairs.size(), "self-intersection", "self-intersections"));
     return from_cgal(surface);
