@@ -1,6 +1,7 @@
 #pragma once
 /// A body as the solver sees it: its frame turned to the principal axes of inertia, which is the only frame Bullet
 /// knows.
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -19,12 +20,13 @@ struct Body {
   Vec3 moments = Vec3::Zero();        ///< principal moments of inertia [kg m^2]
   Quat principal = Quat::Identity();  ///< x_body = principal * x_principal
   double restitution = 0, friction = 0;
-  bool newborn = false;      ///< member of a family that has not yet taken a step
-  std::vector<Hull> parts;   ///< principal axes; empty for the ground
-  double ground_height = 0;  ///< of the ground only
-  double radius = 0;         ///< of the bounding sphere about the centre of mass [m]
-  double reach = 0;          ///< contacts are looked for up to this distance [m]
-  double stride = 0;         ///< largest motion that a contact search may skip [m]
+  double hit_time = std::numeric_limits<double>::infinity();  ///< of its first hit, after the start of the step [s]
+  bool newborn = false;                                       ///< member of a family that has not yet taken a step
+  std::vector<Hull> parts;                                    ///< principal axes; empty for the ground
+  double ground_height = 0;                                   ///< of the ground only
+  double radius = 0;                                          ///< of the bounding sphere about the centre of mass [m]
+  double reach = 0;                                           ///< contacts are looked for up to this distance [m]
+  double stride = 0;                                          ///< largest motion that a contact search may skip [m]
   std::unique_ptr<btCollisionShape> shape;
   std::unique_ptr<btRigidBody> object;
 

@@ -83,13 +83,19 @@ double deepest(const btPersistentManifold& manifold) {
   return depth;
 }
 
-// Speed with which a point that hits from a distance `gap` must leave at once, to fly as if it had hit at the surface:
-// it gains 2 pull gap in v^2 on the way there and loses as much on the way back. A velocity of symplectic Euler is that
-// of half a step before, hence the half steps. Without forces this is Newton's law, restitution * approach.
-double rebound(double restitution, double approach, double pull, double gap, double step_before, double step) {
-  const double arrival = approach + pull * step_before / 2;
-  const double square = restitution * restitution * (arrival * arrival + 2 * pull * gap) - 2 * pull * gap;
-  return std::max(0.0, std::sqrt(std::max(0.0, square)) - pull * step / 2);
+// A hit in free flight, seen from the partner: `gap` away, closing at `approach`, pulled together by `pull` [m/s^2].
+struct Fall {
+  double approach, pull, gap, step_before, step;
+};
+
+// Speed with which the point leaves after Newton's law, v' = e v, at the moment it arrives. A velocity of symplectic
+// Euler is that of half a step before, on the way in and on the way out; without forces this is restitution * approach.
+// What falls back within a step stays.
+double leaving_speed(const Fall& fall, double restitution, double hit_time) {
+  const double now = fall.approach + fall.pull * fall.step_before / 2;
+  const double leaving = restitution * std::sqrt(std::max(0.0, now * now + 2 * fall.pull * fall.gap));
+  if (leaving <= fall.pull * fall.step) return 0;
+  return std::max(0.0, leaving + fall.pull * (hit_time - fall.step / 2));
 }
 
 }  // namespace
@@ -140,9 +146,8 @@ double Dynamics::tolerated(const btPersistentManifold& manifold) {
   return allowed;
 }
 
-// Decides which points act in this step and how. A point acts if it touches or will touch before the step is over; one
-// that hits acts at once and fully, so that neither restitution nor the impulse depends on the gap that the step left
-// over.
+// Finds the points that touch or will touch before the step is over. One that hits does so at its own time within the
+// step, so that neither restitution nor impulse nor place depend on how the steps fall.
 void Dynamics::prepare(btPersistentManifold& manifold, double time_step) {
   const Body &a = body_of(*manifold.getBody0()), &b = body_of(*manifold.getBody1());
   const double tolerance = tolerated(manifold);
@@ -152,20 +157,62 @@ void Dynamics::prepare(btPersistentManifold& manifold, double time_step) {
   for (int i = 0; i < manifold.getNumContacts(); ++i) {
     btManifoldPoint& point = manifold.getContactPoint(i);
     const Vec3 normal = to_eigen(point.m_normalWorldOnB);
-    const double pull = -acceleration.dot(normal);
-    const Vec3 where = to_eigen((point.m_positionWorldOnA + point.m_positionWorldOnB) / 2);
-    const Vec3 relative = velocity_at(*a.object, where) - velocity_at(*b.object, where);
-    const double approach = -relative.dot(normal), closing = approach + pull * kick_time(time_step);
-    const double gap = point.getDistance() + tolerance;
-    const bool acts = gap <= std::max(touching, closing * time_step);
-    const bool hits = acts && approach > resting;
-    prepared_.push_back({&manifold, &point, where, normal, approach, point.getDistance(), acts, hits});
-    point.setDistance(!acts ? out_of_reach : hits ? std::min(gap, 0.0) : gap);
-    const double leaving =
-        hits ? rebound(a.restitution * b.restitution, approach, pull, std::max(gap, 0.0), last_step_, time_step) : 0;
-    point.m_combinedRestitution = hits ? leaving / approach : 0;
-    point.m_combinedFriction = std::sqrt(a.friction * b.friction);
-    point.m_appliedImpulse *= acts ? time_step / last_step_ : 0;
+    const Vec3 relative = velocity_at(*a.object, to_eigen(point.m_positionWorldOnA)) -
+                          velocity_at(*b.object, to_eigen(point.m_positionWorldOnB));
+    Prepared p{&manifold, &point, normal, -relative.dot(normal), point.getDistance()};
+    p.gap = p.distance + tolerance;
+    p.pull = -acceleration.dot(normal);
+    p.closing = p.approach + p.pull * kick_time(time_step);
+    p.acts = p.gap <= std::max(touching, p.closing * time_step);
+    p.hits = p.acts && p.approach > resting;
+    p.hit_time = p.hits ? std::clamp(p.gap / p.closing, 0.0, time_step) : 0;
+    prepared_.push_back(p);
+  }
+}
+
+// Of the points of two bodies that hit, those that do so first: the others are for the next step, if they still hit
+// then.
+void Dynamics::keep_first_hits() {
+  std::map<std::pair<BodyId, BodyId>, double> first;
+  const auto pair = [](const Prepared& p) {
+    return std::pair(body_of(*p.manifold->getBody0()).id, body_of(*p.manifold->getBody1()).id);
+  };
+  for (const Prepared& p : prepared_) {
+    if (!p.hits) continue;
+    double& earliest = first.emplace(pair(p), p.hit_time).first->second;
+    earliest = std::min(earliest, p.hit_time);
+  }
+  for (Prepared& p : prepared_) {
+    if (!p.hits) continue;
+    Body &a = body_of(*p.manifold->getBody0()), &b = body_of(*p.manifold->getBody1());
+    const double then = first.at(pair(p));
+    p.acts = p.hits = p.gap - p.closing * then <= touching_share * std::min(a.radius, b.radius);
+    a.hit_time = std::min(a.hit_time, then);
+    b.hit_time = std::min(b.hit_time, then);
+  }
+}
+
+// Tells the solver how each point acts.
+void Dynamics::apply(const Prepared& p, double time_step) {
+  const Body &a = body_of(*p.manifold->getBody0()), &b = body_of(*p.manifold->getBody1());
+  p.point->setDistance(!p.acts ? out_of_reach : p.hits ? std::min(p.gap, 0.0) : p.gap);
+  p.point->m_combinedFriction = std::sqrt(a.friction * b.friction);
+  p.point->m_combinedRestitution = 0;
+  p.point->m_appliedImpulse *= p.acts ? time_step / last_step_ : 0;
+  if (!p.hits) return;
+  const Fall fall{p.approach, p.pull, std::max(p.gap, 0.0), last_step_, time_step};
+  p.point->m_combinedRestitution = leaving_speed(fall, a.restitution * b.restitution, p.hit_time) / p.approach;
+}
+
+// Moves bodies that hit to where they do; integrateTransforms takes them through the rest of the step.
+void Dynamics::move_to_hits() {
+  for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i) {
+    Body& body = body_of(*m_nonStaticRigidBodies[i]);
+    if (std::isfinite(body.hit_time) && body.object->isActive()) integrate(body, body.hit_time);
+  }
+  for (const Prepared& p : prepared_) {
+    p.point->m_positionWorldOnA = p.manifold->getBody0()->getWorldTransform() * p.point->m_localPointA;
+    p.point->m_positionWorldOnB = p.manifold->getBody1()->getWorldTransform() * p.point->m_localPointB;
   }
 }
 
@@ -173,8 +220,9 @@ void Dynamics::prepare(btPersistentManifold& manifold, double time_step) {
 void Dynamics::harvest() {
   for (const Prepared& p : prepared_) {
     const Body &a = body_of(*p.manifold->getBody0()), &b = body_of(*p.manifold->getBody1());
+    const Vec3 where = to_eigen((p.point->m_positionWorldOnA + p.point->m_positionWorldOnB) / 2);
     if (p.acts && p.point->m_appliedImpulse > 0)
-      log_.samples.push_back({a.id, b.id, p.where, p.normal, p.point->m_appliedImpulse, p.approach,
+      log_.samples.push_back({a.id, b.id, where, p.normal, p.point->m_appliedImpulse, p.approach,
                               patch_share * std::min(a.radius, b.radius), log_.sub_step});
     p.point->setDistance(p.distance);
     if (p.hits) p.point->m_appliedImpulse = 0;
@@ -184,20 +232,28 @@ void Dynamics::harvest() {
 
 void Dynamics::solveConstraints(btContactSolverInfo& info) {
   next_tolerances_.clear();
+  for (int i = 0; i < m_collisionObjects.size(); ++i)
+    body_of(*m_collisionObjects[i]).hit_time = std::numeric_limits<double>::infinity();
   for (int i = 0; i < getDispatcher()->getNumManifolds(); ++i) {
     btPersistentManifold& manifold = *getDispatcher()->getManifoldByIndexInternal(i);
     if (manifold.getNumContacts() > 0) prepare(manifold, info.m_timeStep);
   }
   tolerances_.swap(next_tolerances_);
   for (int i = 0; i < m_collisionObjects.size(); ++i) body_of(*m_collisionObjects[i]).newborn = false;
+  keep_first_hits();
+  for (const Prepared& p : prepared_) apply(p, info.m_timeStep);
+  move_to_hits();
   btDiscreteDynamicsWorld::solveConstraints(info);
   harvest();
   last_step_ = info.m_timeStep;
 }
 
 void Dynamics::integrateTransforms(btScalar time_step) {
-  for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i)
-    if (m_nonStaticRigidBodies[i]->isActive()) integrate(body_of(*m_nonStaticRigidBodies[i]), time_step);
+  for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i) {
+    Body& body = body_of(*m_nonStaticRigidBodies[i]);
+    const double done = std::isfinite(body.hit_time) ? body.hit_time : 0;
+    if (body.object->isActive()) integrate(body, time_step - done);
+  }
 }
 
 struct Simulation::Parts {

@@ -45,15 +45,22 @@ class Dynamics final : public btDiscreteDynamicsWorld {
   struct Prepared {
     btPersistentManifold* manifold;
     btManifoldPoint* point;
-    Vec3 where, normal;
-    double approach, distance;
-    bool acts, hits;
+    Vec3 normal;
+    double approach, distance;  ///< before the step
+    double gap = 0;             ///< distance beyond what is tolerated [m]
+    double pull = 0;            ///< acceleration towards each other [m/s^2]
+    double closing = 0;         ///< approach speed with the pull of the step
+    double hit_time = 0;        ///< after the start of the step
+    bool acts = false, hits = false;
   };
 
   double kick_time(double time_step) const;
   Vec3 acceleration_of(const Body& body) const;
   double tolerated(const btPersistentManifold& manifold);
   void prepare(btPersistentManifold& manifold, double time_step);
+  void keep_first_hits();
+  void apply(const Prepared& p, double time_step);
+  void move_to_hits();
   void harvest();
 
   Tolerances& tolerances_;

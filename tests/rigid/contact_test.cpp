@@ -17,8 +17,6 @@ TEST(Contact, RestingBodiesNeitherFloatNorSink) {
     const BodyId cube = world.add(box(Vec3::Constant(size / 2), Vec3(0, 0.6 * size, 0)));
     const BodyId tetra = world.add(tetrahedron(size / 2, Vec3(4 * size, 0.2 * size, 0)));
     run(world, 2);
-    std::printf("size %g: %g %g\n", size, (world.state(cube).pose.position.y() - size / 2) / size,
-                (world.state(tetra).pose.position.y() - size / 6) / size);
     EXPECT_NEAR(world.state(cube).pose.position.y() / size, 0.5, 0.005) << size;
     EXPECT_NEAR(world.state(tetra).pose.position.y() / size, 1.0 / 6, 0.005) << size;
     EXPECT_LT(fastest(world), 1e-3);
@@ -31,7 +29,6 @@ TEST(Contact, BodiesRestOnEachOtherWithoutAGap) {
     world.add(box(Vec3::Constant(size / 2), Vec3(0, 0.5 * size, 0)));
     const BodyId top = world.add(box(Vec3::Constant(size / 2), Vec3(0, 1.6 * size, 0)));
     run(world, 2);
-    std::printf("top size %g: %g\n", size, world.state(top).pose.position.y() / size - 1.5);
     EXPECT_NEAR(world.state(top).pose.position.y() / size, 1.5, 0.005) << size;
   }
 }
@@ -59,7 +56,6 @@ TEST(Contact, ReboundHeightIsRestitutionSquared) {
     for (double height : {0.3, 1.0}) {
       const std::vector<double> tops = rebounds(size, height, 0.5, 2);
       ASSERT_GE(tops.size(), 2u);
-      std::printf("size %g h %g: %g %g\n", size, height, tops[0] / height * 4, tops[1] / height * 16);
       EXPECT_NEAR(tops[0] / height, 0.25, 0.05 * 0.25) << size << " " << height;
       EXPECT_NEAR(tops[1] / height, 0.0625, 0.05 * 0.0625) << size << " " << height;
     }
@@ -82,7 +78,6 @@ TEST(Contact, BouncingStopsInTime) {
     if (std::abs(world.state(id).twist.linear.y()) > 0.05) last = world.time();
   }
   const double expected = std::sqrt(2 / 9.81) * 3;
-  std::printf("bouncing %g %g\n", last, expected);
   EXPECT_NEAR(last / expected, 1, 0.05);
 }
 
@@ -102,7 +97,6 @@ TEST(Contact, FrictionOnAnInclineIsCoulombs) {
   for (double size : sizes) {
     const double angle = 0.6, friction = 0.4;
     const double expected = 9.81 * (std::sin(angle) - friction * std::cos(angle));
-    std::printf("slide %g %g\n", slide(angle, friction, size) / expected, slide(0.3, 0.4, size));
     EXPECT_NEAR(slide(angle, friction, size) / expected, 1, 0.03) << size;
     EXPECT_LT(slide(0.3, 0.4, size), 1e-3) << size;
   }
@@ -117,7 +111,6 @@ TEST(Contact, TowerStands) {
     run(world, 10);
     for (int i = 0; i < 5; ++i) {
       const Vec3 moved = world.state(ids[i]).pose.position - Vec3(0, (i + 0.5) * size, 0);
-      std::printf("tower %g %d: %g\n", size, i, moved.norm() / size);
       EXPECT_LT(moved.norm() / size, 0.01) << size << " box " << i;
     }
   }

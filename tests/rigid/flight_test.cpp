@@ -57,7 +57,6 @@ Top spin_top(const Mat3& inertia, const Quat& orientation, const Vec3& angular, 
 
 TEST(Flight, FreeTopKeepsEnergyAndAngularMomentum) {
   const Top top = spin_top(Vec3(1, 2, 3).asDiagonal(), Quat::Identity(), Vec3(1, 5, 0.5), 10);
-  std::printf("top %g %g\n", top.energy_drift, top.momentum_drift);
   EXPECT_LT(top.energy_drift, 1e-6);
   EXPECT_LT(top.momentum_drift, 1e-10);
 }
@@ -81,7 +80,6 @@ TEST(Flight, MiddleAxisFlipsWithTheRightPeriod) {
   const Top top = spin_top(moments.asDiagonal(), Quat::Identity(), angular, 10);
   ASSERT_GE(expected.size(), 2u);
   ASSERT_EQ(top.flips.size(), expected.size());
-  std::printf("flip %g %g\n", top.flips[1] - top.flips[0], expected[1] - expected[0]);
   EXPECT_NEAR((top.flips[1] - top.flips[0]) / (expected[1] - expected[0]), 1, 0.02);
 }
 

@@ -1,0 +1,235 @@
+#include "rigid/world.h"
+
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "tests/rigid/bodies.h"
+
+namespace sunder::rigid {
+namespace {
+
+using namespace test;
+
+World pile(int count) {
+  World world(on_ground());
+  for (int i = 0; i < count; ++i) {
+    const auto unit = [&](std::uint64_t k) { return random_unit(11, k, static_cast<std::uint64_t>(i)); };
+    BodySetup setup = box(Vec3(0.02 + 0.03 * unit(0), 0.02 + 0.03 * unit(1), 0.02 + 0.03 * unit(2)),
+                          Vec3(0.1 * unit(3), 0.1 + 0.11 * i, 0.1 * unit(4)));
+    setup.pose.orientation = random_turn(5, static_cast<std::uint64_t>(i));
+    setup.twist.linear = Vec3(unit(5), -2 * unit(6), unit(7));
+    world.add(setup);
+  }
+  return world;
+}
+
+// D5. Promised for one build on one kind of machine.
+TEST(World, SameCallsGiveTheSameBits) {
+  World first = pile(30), second = pile(30);
+  for (int i = 0; i < 300; ++i) {
+    const std::vector<Impact> a = first.step(), b = second.step();
+    ASSERT_EQ(a.size(), b.size()) << i;
+    for (std::size_t k = 0; k < a.size(); ++k) ASSERT_EQ(a[k].impulse, b[k].impulse);
+    ASSERT_EQ(hash(first), hash(second)) << i;
+  }
+}
+
+TEST(World, RestoredStepRepeatsBitByBit) {
+  World world = pile(30);
+  for (int i = 0; i < 150; ++i) world.step();
+  const World::Snapshot before = world.snapshot();
+  world.step();
+  world.restore(before);
+  EXPECT_EQ(world.time(), before.time);
+  for (std::size_t i = 0; i < before.ids.size(); ++i) {
+    const BodyState state = world.state(before.ids[i]);
+    EXPECT_EQ(state.pose.position, before.states[i].pose.position);
+    EXPECT_EQ(state.twist.linear, before.states[i].twist.linear);
+    EXPECT_LT(state.pose.orientation.angularDistance(before.states[i].pose.orientation), 1e-7);
+  }
+  const auto repeat = [&] {
+    world.restore(before);
+    std::vector<double> impulses;
+    for (int i = 0; i < 20; ++i)
+      for (const Impact& impact : world.step()) impulses.push_back(impact.impulse);
+    return std::pair(hash(world), impulses);
+  };
+  const auto once = repeat();
+  EXPECT_EQ(once, repeat());
+  // However long the world went on in between.
+  for (int i = 0; i < 50; ++i) world.step();
+  EXPECT_EQ(once, repeat());
+}
+
+TEST(World, RestoreLeavesNewAndRemovedBodiesAlone) {
+  World world(weightless());
+  const BodyId stays = world.add(box(Vec3::Constant(0.1), Vec3::Zero()));
+  const BodyId goes = world.add(box(Vec3::Constant(0.1), Vec3(1, 0, 0)));
+  const World::Snapshot before = world.snapshot();
+  world.step();
+  world.remove(goes);
+  const BodyId comes = world.add(box(Vec3::Constant(0.1), Vec3(2, 0, 0)));
+  world.restore(before);
+  EXPECT_EQ(world.bodies(), (std::vector<BodyId>{stays, comes}));
+  EXPECT_EQ(world.time(), 0);
+  EXPECT_EQ(world.state(comes).pose.position, Vec3(2, 0, 0));
+  EXPECT_GT(comes, goes);
+  EXPECT_THROW(world.state(goes), Error);
+}
+
+// The step back of a fracture: the same overlap is tolerated again.
+TEST(World, RestoreBringsBackToleratedOverlaps) {
+  World world(weightless());
+  BodySetup left = box(Vec3::Constant(0.1), Vec3::Zero()), right = box(Vec3::Constant(0.1), Vec3(0.19, 0, 0));
+  left.family = right.family = 1;
+  world.add(left);
+  const BodyId id = world.add(right);
+  world.step();
+  const World::Snapshot before = world.snapshot();
+  BodyState parted = world.state(id);
+  parted.pose.position.x() = 0.5;
+  world.set_state(id, parted);
+  world.step();
+  world.restore(before);
+  run(world, 0.2);
+  EXPECT_LT(fastest(world), 1e-6);
+  EXPECT_TRUE(world.overlaps().empty());
+}
+
+TEST(World, BodiesFallAsleepAndWakeWhenHit) {
+  World world(on_ground());
+  const BodyId sleeper = world.add(box(Vec3::Constant(0.05), Vec3(0, 0.05, 0)));
+  run(world, 3);
+  EXPECT_EQ(world.state(sleeper).twist.linear, Vec3::Zero());
+  BodySetup hammer = ball(0.03, Vec3(-0.3, 0.06, 0), 7850);
+  hammer.twist.linear = Vec3(4, 0, 0);
+  world.add(hammer);
+  const std::vector<Impact> hits = run(world, 0.3);
+  ASSERT_FALSE(hits.empty());
+  EXPECT_EQ(hits[0].body_a, sleeper);
+  EXPECT_GT(world.state(sleeper).pose.position.x(), 0.1);
+}
+
+TEST(World, RemovingTheSupportWakesWhatRestedOnIt) {
+  for (Motion motion : {Motion::dynamic, Motion::fixed}) {
+    World world(on_ground());
+    BodySetup base = box(Vec3::Constant(0.05), Vec3(0, 0.05, 0));
+    base.motion = motion;
+    const BodyId support = world.add(base);
+    const BodyId middle = world.add(box(Vec3::Constant(0.05), Vec3(0, 0.15, 0)));
+    const BodyId top = world.add(box(Vec3::Constant(0.05), Vec3(0, 0.25, 0)));
+    run(world, 4);
+    EXPECT_EQ(world.state(top).twist.linear, Vec3::Zero());
+    world.remove(support);
+    run(world, 1);
+    EXPECT_NEAR(world.state(middle).pose.position.y(), 0.05, 1e-3);
+    EXPECT_NEAR(world.state(top).pose.position.y(), 0.15, 1e-3);
+  }
+}
+
+TEST(World, MovingTheSupportWakesWhatRestedOnIt) {
+  World world(on_ground());
+  BodySetup lift = box(Vec3(0.1, 0.05, 0.1), Vec3(0, 0.05, 0));
+  lift.motion = Motion::kinematic;
+  const BodyId platform = world.add(lift);
+  const BodyId rider = world.add(box(Vec3::Constant(0.05), Vec3(0, 0.15, 0)));
+  run(world, 4);
+  EXPECT_EQ(world.state(rider).twist.linear, Vec3::Zero());
+  BodyState up = world.state(platform);
+  up.twist.linear = Vec3(0, 0.1, 0);
+  world.set_state(platform, up);
+  run(world, 1);
+  EXPECT_NEAR(world.state(rider).pose.position.y(), 0.25, 2e-3);
+}
+
+TEST(World, FreeBodiesNeverFallAsleep) {
+  World world(weightless());
+  BodySetup setup = box(Vec3::Constant(0.05), Vec3::Zero());
+  setup.twist = {Vec3(1e-5, 0, 0), Vec3(0, 1e-5, 0)};
+  const BodyId id = world.add(setup);
+  run(world, 5);
+  EXPECT_NEAR(world.state(id).pose.position.x(), 5e-5, 1e-12);
+}
+
+TEST(World, OverlapsNameTheDeepestFirst) {
+  World world(on_ground());
+  const BodyId sunk = world.add(box(Vec3::Constant(0.1), Vec3(0, 0.07, 0)));
+  const BodyId beside = world.add(box(Vec3::Constant(0.1), Vec3(0.19, 0.1, 0)));
+  world.add(box(Vec3::Constant(0.1), Vec3(2, 0.1, 0)));
+  const std::vector<World::Overlap> overlaps = world.overlaps();
+  ASSERT_EQ(overlaps.size(), 2u);
+  EXPECT_EQ(overlaps[0].body_a, sunk);
+  EXPECT_EQ(overlaps[0].body_b, ground_id);
+  EXPECT_NEAR(overlaps[0].depth, 0.03, 1e-9);
+  EXPECT_EQ(overlaps[1].body_b, beside);
+  EXPECT_NEAR(overlaps[1].depth, 0.01, 1e-9);
+}
+
+void expect_refused(const BodySetup& setup, const std::string& word) {
+  World world{WorldSettings()};
+  try {
+    world.add(setup);
+    FAIL() << "accepted: " << word;
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::usage);
+    EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
+  }
+  EXPECT_TRUE(world.bodies().empty());
+}
+
+TEST(World, BadBodiesAreRefusedByName) {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  const BodySetup good = box(Vec3::Constant(0.1), Vec3::Zero());
+  for (double mass : {0.0, -1.0, nan, infinity}) {
+    BodySetup bad = good;
+    bad.mass = mass;
+    expect_refused(bad, "mass");
+  }
+  BodySetup bad = good;
+  bad.inertia(1, 1) = nan;
+  expect_refused(bad, "inertia");
+  bad = good;
+  bad.inertia(0, 0) = -1;
+  expect_refused(bad, "inertia");
+  bad = good;
+  bad.inertia(0, 1) = 1;
+  expect_refused(bad, "symmetric");
+  bad = good;
+  bad.hulls.clear();
+  expect_refused(bad, "hull");
+  bad = good;
+  bad.hulls = {corners_of_box(Vec3(1, 1, 0))};
+  expect_refused(bad, "hull");
+  bad = good;
+  bad.hulls[0].vertices[3].x() = nan;
+  expect_refused(bad, "hull");
+  bad = good;
+  bad.pose.position.y() = infinity;
+  expect_refused(bad, "finite");
+  bad = good;
+  bad.restitution = 1.5;
+  expect_refused(bad, "restitution");
+}
+
+TEST(World, FixedBodiesNeedNoMass) {
+  World world{WorldSettings()};
+  BodySetup setup = box(Vec3::Constant(0.1), Vec3::Zero());
+  setup.mass = -1;
+  setup.inertia.setZero();
+  setup.motion = Motion::fixed;
+  const BodyId id = world.add(setup);
+  run(world, 0.1);
+  EXPECT_EQ(world.state(id).pose.position, Vec3::Zero());
+}
+
+TEST(World, CanBeMoved) {
+  World world = pile(3);
+  World other = std::move(world);
+  EXPECT_EQ(other.bodies().size(), 3u);
+  other.step();
+}
+
+}  // namespace
+}  // namespace sunder::rigid
