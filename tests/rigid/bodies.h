@@ -55,3 +55,84 @@ inline BodySetup ball(double radius, const Vec3& position, double density = 1000
   setup.pose.position = position;
   return setup;
 }
+
+/// Regular tetrahedron with one face down; its centre of mass lies a third of the circumradius above that face.
+inline BodySetup tetrahedron(double circumradius, const Vec3& position, double density = 1000) {
+  BodySetup setup;
+  geometry::TriangleMesh mesh;
+  mesh.vertices = {Vec3(0, circumradius, 0)};
+  const double ring = circumradius * std::sqrt(8.0) / 3;
+  for (int k = 0; k < 3; ++k) {
+    const double turn = 2 * std::numbers::pi * k / 3;
+    mesh.vertices.push_back({ring * std::cos(turn), -circumradius / 3, ring * std::sin(turn)});
+  }
+  const double edge = circumradius * std::sqrt(8.0 / 3);
+  setup.hulls = {mesh};
+  setup.mass = density * std::pow(edge, 3) / (6 * std::sqrt(2.0));
+  setup.inertia = setup.mass * edge * edge / 20 * Mat3::Identity();
+  setup.pose.position = position;
+  return setup;
+}
+
+inline WorldSettings on_ground(double restitution = 0.3, double friction = 0.6) {
+  WorldSettings settings;
+  settings.has_ground = true;
+  settings.ground_restitution = restitution;
+  settings.ground_friction = friction;
+  return settings;
+}
+
+inline WorldSettings weightless() {
+  WorldSettings settings;
+  settings.gravity.setZero();
+  return settings;
+}
+
+inline std::vector<Impact> run(World& world, double seconds, double time_step = 1.0 / 480) {
+  std::vector<Impact> all;
+  for (int i = 0; i < std::lround(seconds / time_step); ++i)
+    for (const Impact& impact : world.step()) all.push_back(impact);
+  return all;
+}
+
+inline double kinetic_energy(const World& world, BodyId id) {
+  const Twist twist = world.state(id).twist;
+  return (world.mass(id) * twist.linear.squaredNorm() + twist.angular.dot(world.world_inertia(id) * twist.angular)) / 2;
+}
+
+inline double kinetic_energy(const World& world) {
+  double sum = 0;
+  for (BodyId id : world.bodies()) sum += kinetic_energy(world, id);
+  return sum;
+}
+
+inline double fastest(const World& world) {
+  double speed = 0;
+  for (BodyId id : world.bodies()) speed = std::max(speed, world.state(id).twist.linear.norm());
+  return speed;
+}
+
+/// FNV-1a over the bits of all states.
+inline std::uint64_t hash(const World& world) {
+  std::uint64_t h = 14695981039346656037ULL;
+  const auto take = [&](double x) {
+    std::uint64_t bits;
+    std::memcpy(&bits, &x, sizeof bits);
+    for (int i = 0; i < 8; ++i) h = (h ^ (bits >> (8 * i) & 255)) * 1099511628211ULL;
+  };
+  for (BodyId id : world.bodies()) {
+    const BodyState s = world.state(id);
+    for (int i = 0; i < 3; ++i) take(s.pose.position[i]), take(s.twist.linear[i]), take(s.twist.angular[i]);
+    for (int i = 0; i < 4; ++i) take(s.pose.orientation.coeffs()[i]);
+  }
+  return h;
+}
+
+inline Quat random_turn(std::uint64_t stream, std::uint64_t index) {
+  const auto unit = [&](int k) { return random_unit(7, stream, 4 * index + static_cast<std::uint64_t>(k)); };
+  const double a = 2 * std::numbers::pi * unit(0), b = 2 * std::numbers::pi * unit(1), u = unit(2);
+  return Quat(std::sqrt(u) * std::cos(b), std::sqrt(1 - u) * std::sin(a), std::sqrt(1 - u) * std::cos(a),
+              std::sqrt(u) * std::sin(b));
+}
+
+}  // namespace sunder::rigid::test
