@@ -3,10 +3,10 @@
 #include <cmath>
 #include <string>
 
-#include "crack/classify.h"
 #include "crack/detail/bins.h"
-#include "crack/islands.h"
-#include "crack/medial.h"
+#include "crack/detail/classify.h"
+#include "crack/detail/islands.h"
+#include "crack/detail/medial.h"
 
 namespace sunder::crack {
 
@@ -17,14 +17,15 @@ constexpr double shortest_edge = 1e-10;  // of the domain's diagonal: what geome
 constexpr double closing_gain = 1.02;    // neck closing roughens surfaces: it has to make more pieces by so much
 constexpr double lump_depth = 1.5;       // in cell sizes
 
-using detail::PointBins;
+using namespace detail;
 
-void check(const DamageField& field) {
+void check(const DamageField& field, const Box& domain) {
   if (field.points.size() != field.damage.size())
     throw Error(ErrorKind::internal, "crack: " + std::to_string(field.points.size()) + " points but " +
                                          std::to_string(field.damage.size()) + " damage values");
   if (!(field.spacing > 0) || !(field.cell_size > 0))
     throw Error(ErrorKind::internal, "crack: spacing and cell size must be positive");
+  if (domain.isEmpty()) throw Error(ErrorKind::internal, "crack: the domain is empty");
   for (std::size_t i = 0; i < field.points.size(); ++i)
     if (!field.points[i].allFinite() || std::isnan(field.damage[i]))
       throw Error(ErrorKind::internal, "crack: point " + std::to_string(i) + " is not finite");
@@ -33,7 +34,7 @@ void check(const DamageField& field) {
 std::vector<int> indices_of(const std::vector<char>& marks, bool marked) {
   std::vector<int> result;
   for (int i = 0; i < static_cast<int>(marks.size()); ++i)
-    if (static_cast<bool>(marks[i]) == marked) result.push_back(i);
+    if ((marks[i] != 0) == marked) result.push_back(i);
   return result;
 }
 
@@ -150,7 +151,7 @@ MedialRequest medial_request(const DamageField& field, const Box& domain, const 
 }  // namespace
 
 Extraction extract(const DamageField& field, const Box& domain, const Settings& settings, Progress& progress) {
-  check(field);
+  check(field, domain);
   Extraction result;
   result.region.assign(field.points.size(), 0);
   const std::vector<char> sound = sound_points(field, settings.crack_damage);

@@ -173,6 +173,7 @@ TEST(Malformed, FieldsAreRefused) {
   field.damage[3] = std::nan("");
   EXPECT_THROW(run(field), Error);
   field = cloud(unit_cube(), 0.25, everywhere, nowhere);
+  EXPECT_THROW(run(field, Box()), Error);
   field.spacing = 0;
   EXPECT_THROW(run(field), Error);
 }

@@ -1,8 +1,8 @@
-#include "crack/classify.h"
+#include "crack/detail/classify.h"
 
 #include <cmath>
 
-namespace sunder::crack {
+namespace sunder::crack::detail {
 
 DamageBetween::DamageBetween(const std::vector<Vec3>& points, const std::vector<int>& damaged, double spacing)
     : points_(points), bins_(points, damaged, spacing), spacing_(spacing) {}
@@ -24,4 +24,4 @@ bool DamageBetween::operator()(const Vec3& a, const Vec3& b) const {
   return found;
 }
 
-}  // namespace sunder::crack
+}  // namespace sunder::crack::detail

@@ -1,11 +1,11 @@
-#include "crack/medial.h"
+#include "crack/detail/medial.h"
 
 #include <string>
 
 #include "core/random.h"
-#include "crack/boundary.h"
+#include "crack/detail/boundary.h"
 
-namespace sunder::crack {
+namespace sunder::crack::detail {
 
 namespace {
 
@@ -37,4 +37,4 @@ Medial medial_faces(const std::vector<Site>& sites, const MedialRequest& request
                                        " tries; a larger crack jitter may help");
 }
 
-}  // namespace sunder::crack
+}  // namespace sunder::crack::detail

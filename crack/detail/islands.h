@@ -5,9 +5,9 @@
 #include "core/types.h"
 #include "crack/extract.h"
 
-namespace sunder::crack {
+namespace sunder::crack::detail {
 
-/// The points that lie within `links * spacing` of each other, as rows of a sparse matrix.
+/// Which points lie within a radius of each other, as rows of a sparse matrix.
 struct LinkGraph {
   std::vector<int> start;      ///< per point, and one more: its first entry in `neighbour`
   std::vector<int> neighbour;  ///< ascending within a point
@@ -33,4 +33,4 @@ struct Partition {
 Partition partition(const std::vector<Vec3>& points, const LinkGraph& links, const std::vector<char>& solid,
                     int smallest, double spacing);
 
-}  // namespace sunder::crack
+}  // namespace sunder::crack::detail

@@ -1,4 +1,4 @@
-#include "crack/cells.h"
+#include "crack/detail/cells.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 
 #include "core/random.h"
 
-namespace sunder::crack {
+namespace sunder::crack::detail {
 
 namespace {
 
@@ -171,4 +171,4 @@ std::optional<CellFaces> cell_faces(const std::vector<Site>& sites, const CellRe
   return collector.finish();
 }
 
-}  // namespace sunder::crack
+}  // namespace sunder::crack::detail

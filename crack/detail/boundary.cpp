@@ -1,9 +1,9 @@
-#include "crack/boundary.h"
+#include "crack/detail/boundary.h"
 
 #include <algorithm>
 #include <array>
 
-namespace sunder::crack {
+namespace sunder::crack::detail {
 
 namespace {
 
@@ -43,4 +43,4 @@ bool is_closed(const geometry::RegionBoundary& boundary) {
   });
 }
 
-}  // namespace sunder::crack
+}  // namespace sunder::crack::detail

@@ -5,7 +5,7 @@
 
 #include "core/types.h"
 
-namespace sunder::crack {
+namespace sunder::crack::detail {
 
 /// A point that owns a Voronoi cell.
 struct Site {
@@ -47,4 +47,4 @@ struct CellRequest {
 /// that fails: more than four meet, two cells disagree about the face between them, an edge is too short.
 std::optional<CellFaces> cell_faces(const std::vector<Site>& sites, const CellRequest& request);
 
-}  // namespace sunder::crack
+}  // namespace sunder::crack::detail

@@ -1,13 +1,13 @@
 #pragma once
-/// The medial faces between pieces, and the boundaries of the regions: cells that fit together, from as few sites as
-/// make them.
+/// The medial faces between pieces, and the boundaries of the regions: jitters the sites until their cells fit
+/// together.
 #include <vector>
 
 #include "core/progress.h"
-#include "crack/cells.h"
+#include "crack/detail/cells.h"
 #include "geometry/cut.h"
 
-namespace sunder::crack {
+namespace sunder::crack::detail {
 
 struct MedialRequest {
   CellRequest cells;
@@ -25,4 +25,4 @@ struct Medial {
 /// Errors: ErrorKind::internal when cells do not fit together after repeated jitter.
 Medial medial_faces(const std::vector<Site>& sites, const MedialRequest& request, Progress& progress);
 
-}  // namespace sunder::crack
+}  // namespace sunder::crack::detail

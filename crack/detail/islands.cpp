@@ -1,4 +1,4 @@
-#include "crack/islands.h"
+#include "crack/detail/islands.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 
 #include "crack/detail/bins.h"
 
-namespace sunder::crack {
+namespace sunder::crack::detail {
 
 namespace {
 
@@ -124,10 +124,10 @@ void flood(const std::vector<Vec3>& points, const LinkGraph& links, double spaci
   std::vector<int> island_points;
   for (int i = 0; i < static_cast<int>(points.size()); ++i)
     if (result.is_island[i]) island_points.push_back(i);
-  const detail::PointBins islands(points, island_points, 2 * spacing);
+  const PointBins islands(points, island_points, 2 * spacing);
   for (int i = 0; i < static_cast<int>(points.size()); ++i) {
     if (result.is_island[i]) continue;
-    const detail::PointBins::Nearest nearest = islands.nearest(points[i]);
+    const PointBins::Nearest nearest = islands.nearest(points[i]);
     const int nearest_piece = result.piece[nearest.index];
     const std::int64_t distance = steps(nearest.distance, spacing);
     result.piece[i] = choose_piece(arrivals[i], nearest_piece, distance);
@@ -148,7 +148,7 @@ double effective_count(const Partition& partition) {
 }  // namespace
 
 LinkGraph link_graph(const std::vector<Vec3>& points, double radius) {
-  const detail::PointBins bins(points, radius);
+  const PointBins bins(points, radius);
   LinkGraph graph;
   graph.start.reserve(points.size() + 1);
   graph.start.push_back(0);
@@ -175,4 +175,4 @@ Partition partition(const std::vector<Vec3>& points, const LinkGraph& links, con
   return result;
 }
 
-}  // namespace sunder::crack
+}  // namespace sunder::crack::detail

@@ -5,7 +5,7 @@
 #include "core/types.h"
 #include "crack/detail/bins.h"
 
-namespace sunder::crack {
+namespace sunder::crack::detail {
 
 /// Answers whether some damaged point lies beside the segment between two sites, at most `reach` spacings away from it.
 class DamageBetween {
@@ -19,8 +19,8 @@ class DamageBetween {
 
  private:
   const std::vector<Vec3>& points_;
-  detail::PointBins bins_;
+  PointBins bins_;
   double spacing_;
 };
 
-}  // namespace sunder::crack
+}  // namespace sunder::crack::detail
