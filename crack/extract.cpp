@@ -100,14 +100,23 @@ std::vector<Site> choose_sites(const DamageField& field, const LinkGraph& links,
   return sites;
 }
 
-/// Two sites of one piece that no sound point links lie on two sides of whatever is between them.
-bool linked_by_island(const LinkGraph& links, const Partition& pieces, int a, int b) {
+/// Does a way of two links over an island point join two points?
+bool joined_by_two(const LinkGraph& links, const Partition& pieces, int a, int b) {
   for (int i = links.start[a], j = links.start[b]; i < links.start[a + 1] && j < links.start[b + 1];) {
     const int from_a = links.neighbour[i], from_b = links.neighbour[j];
     if (from_a == from_b && pieces.is_island[from_a]) return true;
     i += from_a <= from_b;
     j += from_b <= from_a;
   }
+  return false;
+}
+
+/// Sites of one piece that a way of at most three links over island points joins are neighbours on a rough side of a
+/// crack; those that none joins lie on its two sides.
+bool on_one_side(const LinkGraph& links, const Partition& pieces, int a, int b) {
+  if (joined_by_two(links, pieces, a, b)) return true;
+  for (int e = links.start[a]; e < links.start[a + 1]; ++e)
+    if (pieces.is_island[links.neighbour[e]] && joined_by_two(links, pieces, links.neighbour[e], b)) return true;
   return false;
 }
 
@@ -126,7 +135,7 @@ std::vector<CrackFace> crack_faces(const DamageField& field, const std::vector<i
   }
   for (const InnerFace& face : cells.inner) {
     const int a = sites[face.site].point, b = sites[face.neighbour].point;
-    if (!linked_by_island(links, pieces, a, b) && has_damage(face.site, face.neighbour))
+    if (has_damage(face.site, face.neighbour) && !on_one_side(links, pieces, a, b))
       faces.push_back({face.polygon, FaceKind::partial, a, b});
   }
   return faces;

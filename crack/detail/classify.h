@@ -10,8 +10,8 @@ namespace sunder::crack::detail {
 /// Answers whether some damaged point lies beside the segment between two sites, at most `reach` spacings away from it.
 class DamageBetween {
  public:
-  static constexpr double reach =
-      0.75;  ///< in spacings: a sheet of a single layer of points has no gaps that let a segment through
+  /// In spacings: a sheet of a single layer of points has no gaps that let a segment through.
+  static constexpr double reach = 0.75;
 
   DamageBetween(const std::vector<Vec3>& points, const std::vector<int>& damaged, double spacing);
 
