@@ -13,7 +13,11 @@ namespace {
 
 constexpr double band = 0.05;  // of the smaller part's radius: points this far above the deepest still count
 constexpr double face_preference =
-    1e-3;                          // of the smaller part's radius: a face may be this much worse than an edge pair
+    1e-3;  // of the smaller part's radius: a face may be this much worse than an edge pair
+constexpr double missed_depth =
+    0.01;  // of the smaller part's radius: what the points on a face may be short of the full depth
+// EPA stops at about 1e-4 of the size, so a tighter check would send every overlap through the search over all faces.
+constexpr double witness_accuracy = 1e-3;
 constexpr double axis_cone = 0.9;  // cosine within which a face is tried in place of the axis found
 
 // A part at its place in the world.
@@ -86,7 +90,8 @@ Separation separation(const Placed& a, const btTransform& place_a, const Placed&
   const bool known =
       (apart && found.distance > 1e-9 * a.hull.radius) ||
       btGjkEpaSolver2::Penetration(a.hull.shape.get(), place_a, b.hull.shape.get(), place_b, guess, found, false);
-  const Vec3 normal = to_eigen(found.normal);
+  // The solver leaves its normal in the axes of the first shape.
+  const Vec3 normal = a.rotation * to_eigen(found.normal);
   if (known && std::abs(normal.norm() - 1) < 1e-6) {
     improve(result.axis, axis_along(a, b, normal.normalized()));
     improve(result.axis, axis_along(a, b, -normal.normalized()));
@@ -95,7 +100,7 @@ Separation separation(const Placed& a, const btTransform& place_a, const Placed&
   }
   // Bodies that touch exactly leave GJK and EPA without a direction; the gap along what they return then differs from
   // the distance.
-  const double accuracy = 1e-6 * std::min(a.hull.radius, b.hull.radius);
+  const double accuracy = witness_accuracy * std::min(a.hull.radius, b.hull.radius);
   if (!(std::abs(result.axis.gap - found.distance) < accuracy)) {
     result.axis = best_face_axis(a, b);
     result.on_a = a.point(a.extreme(-result.axis.normal));
@@ -135,6 +140,8 @@ Footprint footprint(const Placed& base, const HullFace& face, const Placed& othe
   for (const Vec3& p : polygon) print.heights.push_back(normal.dot(p) - offset);
   return print;
 }
+
+bool is_deeper(const Contact& p, const Contact& q) { return p.distance < q.distance; }
 
 double area_with(const Contact& p, const Contact& q, const Contact& r) {
   return (q.on_b - p.on_b).cross(r.on_b - p.on_b).norm();
@@ -198,9 +205,11 @@ std::vector<Contact> contacts(const Hull& a, const btTransform& place_a, const H
   std::vector<Contact> list;
   if (face_axis.gap >= found.axis.gap - face_preference * size && face_axis.normal.dot(found.axis.normal) > axis_cone)
     list = b_is_base ? face_contacts(pb, face_b, pa, 1) : face_contacts(pa, face_a, pb, -1);
-  if (list.empty()) {
+  // Edges against edges, and corners that the prism over the face cuts off: the pair of points that GJK or EPA found.
+  const auto deepest = std::min_element(list.begin(), list.end(), is_deeper);
+  if (list.empty() || deepest->distance > found.axis.gap + missed_depth * size) {
     const Vec3 middle = (found.on_a + found.on_b) / 2, half = found.axis.normal * (found.axis.gap / 2);
-    return {{middle + half, middle - half, found.axis.normal, found.axis.gap}};
+    list.push_back({middle + half, middle - half, found.axis.normal, found.axis.gap});
   }
   return reduced(std::move(list), band * size);
 }

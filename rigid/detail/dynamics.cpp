@@ -21,6 +21,8 @@ constexpr double patch_share = 0.5;
 // Free rotation turns at most this angle per integration stage [rad].
 constexpr double turn_per_stage = 0.005;
 constexpr int most_stages = 64;
+// A body that was slow for so long may sleep [s].
+constexpr double quiet_time = 0.5;
 // Beyond any threshold of the solver: a point at this distance is passed over.
 constexpr double out_of_reach = std::numeric_limits<double>::infinity();
 
@@ -254,6 +256,15 @@ void Dynamics::integrateTransforms(btScalar time_step) {
     const double done = std::isfinite(body.hit_time) ? body.hit_time : 0;
     if (body.object->isActive()) integrate(body, time_step - done);
   }
+}
+
+// Bullet waits two seconds before it lets bodies sleep; a heap of fragments is at rest sooner.
+void Dynamics::updateActivationState(btScalar time_step) {
+  for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i) {
+    btRigidBody& object = *m_nonStaticRigidBodies[i];
+    if (object.getDeactivationTime() > quiet_time) object.setDeactivationTime(std::numeric_limits<float>::max());
+  }
+  btDiscreteDynamicsWorld::updateActivationState(time_step);
 }
 
 struct Simulation::Parts {

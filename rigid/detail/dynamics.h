@@ -39,6 +39,7 @@ class Dynamics final : public btDiscreteDynamicsWorld {
   void createPredictiveContacts(btScalar) override {}   // contacts() looks ahead by itself
   void solveConstraints(btContactSolverInfo& info) override;
   void integrateTransforms(btScalar time_step) override;
+  void updateActivationState(btScalar time_step) override;
 
  private:
   /// A contact point during the solve, with what the solver must not see and what it forgets.
