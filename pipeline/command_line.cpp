@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <tbb/global_control.h>
+#include <unistd.h>
 
 #include "geometry/inspect.h"
 #include "geometry/load.h"
@@ -63,7 +64,7 @@ int run_command(const RunArguments& arguments, LogFormat log) {
     if (log == LogFormat::json)
       say(event(f));
     else
-      std::cout << sentence(f) << std::endl;
+      std::cout << (isatty(STDERR_FILENO) ? "\r\x1b[K" : "") << sentence(f) << std::endl;
   };
   std::optional<tbb::global_control> limit;
   if (arguments.threads > 0)

@@ -47,7 +47,7 @@ class Display : public Progress {
  public:
   void report(std::string_view stage, double fraction) final {
     const std::lock_guard lock(mutex_);
-    const bool total = stage == "total", new_stage = !total && stage != state_.stage;
+    const bool total = stage == "total";
     if (total) {
       state_.total_fraction = fraction;
     } else {
@@ -57,7 +57,7 @@ class Display : public Progress {
     const auto now = std::chrono::steady_clock::now();
     const bool due = std::chrono::duration<double>(now - shown_).count() >= interval_;
     const bool finished = total && fraction >= 1;
-    if (!wants(due, new_stage, finished)) return;
+    if (!wants(due, finished)) return;
     shown_ = now;
     state_.seconds_left =
         detail::seconds_left(std::chrono::duration<double>(now - start_).count(), state_.total_fraction);
@@ -70,7 +70,7 @@ class Display : public Progress {
   explicit Display(double interval) : interval_(interval) {}
 
  private:
-  virtual bool wants(bool due, bool new_stage, bool finished) const = 0;
+  virtual bool wants(bool due, bool finished) const = 0;
   virtual void show(const detail::ProgressState& state) = 0;
 
   StopSignals signals_;
@@ -87,19 +87,20 @@ class TerminalBar final : public Display {
   ~TerminalBar() override { std::fputs("\r\x1b[K", stderr); }
 
  private:
-  bool wants(bool due, bool, bool finished) const override { return due || finished; }
+  bool wants(bool due, bool finished) const override { return due || finished; }
   void show(const detail::ProgressState& state) override {
     std::fprintf(stderr, "\r%s\x1b[K", detail::bar_line(state).c_str());
     std::fflush(stderr);
   }
 };
 
-class StageLines final : public Display {
+// For logs that people read: a line now and then.
+class LogLines final : public Display {
  public:
-  StageLines() : Display(0) {}
+  LogLines() : Display(10) {}
 
  private:
-  bool wants(bool, bool new_stage, bool finished) const override { return new_stage || finished; }
+  bool wants(bool due, bool finished) const override { return due || finished; }
   void show(const detail::ProgressState& state) override {
     std::fprintf(stderr, "%s\n", detail::stage_line(state).c_str());
   }
@@ -110,7 +111,7 @@ class JsonLines final : public Display {
   JsonLines() : Display(0.5) {}
 
  private:
-  bool wants(bool due, bool, bool finished) const override { return due || finished; }
+  bool wants(bool due, bool finished) const override { return due || finished; }
   void show(const detail::ProgressState& state) override {
     std::printf("%s\n", detail::json_line(state).c_str());
     std::fflush(stdout);
@@ -122,7 +123,7 @@ class JsonLines final : public Display {
 std::unique_ptr<Progress> make_progress_display(LogFormat format) {
   if (format == LogFormat::json) return std::make_unique<JsonLines>();
   if (isatty(STDERR_FILENO)) return std::make_unique<TerminalBar>();
-  return std::make_unique<StageLines>();
+  return std::make_unique<LogLines>();
 }
 
 }  // namespace sunder::pipeline

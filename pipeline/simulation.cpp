@@ -44,6 +44,15 @@ std::string fragment_name(const std::string& body, int number) {
   return body + digits;
 }
 
+/// Collision cost grows with the product of the parts of two bodies, and the shape of a small fragment hardly shows.
+geometry::ConvexPartsSettings collision_detail(double share_of_original) {
+  if (share_of_original < 0.005) return {.max_parts = 1, .excess = 0.1, .max_hull_vertices = 16};
+  if (share_of_original < 0.05) return {.max_parts = 2, .excess = 0.1, .max_hull_vertices = 24};
+  if (share_of_original < 0.2) return {.max_parts = 4, .excess = 0.1, .max_hull_vertices = 24};
+  if (share_of_original < 0.98) return {.max_parts = 8, .excess = 0.1, .max_hull_vertices = 24};
+  return {.max_parts = 16, .excess = 0.05, .max_hull_vertices = 32};
+}
+
 RigidPart rotated(const RigidPart& part, const Quat& q) {
   const Mat3 r = q.toRotationMatrix();
   return {part.mass, r * part.centre, r * part.inertia * r.transpose()};
@@ -103,7 +112,8 @@ void Simulation::place(const SceneBody& body, int index, Progress&) {
 rigid::BodyId Simulation::add_body(const Piece& piece, const Live& live, const Pose& pose, const Twist& twist,
                                    int family) {
   rigid::BodySetup setup;
-  setup.hulls = geometry::convex_parts(piece.mesh).hulls;
+  const double share = piece.volume / original_volume_[static_cast<std::size_t>(live.origin_index)];
+  setup.hulls = geometry::convex_parts(piece.mesh, collision_detail(share)).hulls;
   if (setup.hulls.empty()) {
     const Box box = geometry::bounds(piece.mesh);
     setup.hulls = {geometry::transformed(geometry::box(box.sizes().cwiseMax(1e-3 * box.sizes().maxCoeff())),
