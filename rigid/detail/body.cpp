@@ -13,9 +13,9 @@ namespace sunder::rigid::detail {
 namespace {
 
 // Bullet's own lengths are meant for bodies of a metre; these scale with the body.
-constexpr double reach_share = 0.25;   // of the radius
-constexpr double stride_share = 0.5;   // of the thickness, but not below the next
-constexpr double least_stride = 0.05;  // of the radius
+constexpr double largest_stride = 0.5;  // of the radius
+constexpr double stride_share = 0.5;    // of the thickness, but not below the next
+constexpr double least_stride = 0.25;   // of the radius
 // A body slower than this share of sqrt(gravity * radius) may fall asleep.
 constexpr double sleep_share = 0.02;
 
@@ -69,8 +69,7 @@ void add_parts(Body& body, const BodySetup& setup) {
     }
   }
   if (body.parts.empty()) refuse(body.id, "it needs at least one collision hull with a volume");
-  body.reach = reach_share * body.radius;
-  body.stride = std::min(body.reach, std::max(stride_share * thickness, least_stride * body.radius));
+  body.stride = std::min(largest_stride * body.radius, std::max(stride_share * thickness, least_stride * body.radius));
 }
 
 std::unique_ptr<btCollisionShape> joint_shape(Body& body) {

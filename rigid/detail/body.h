@@ -25,8 +25,8 @@ struct Body {
   std::vector<Hull> parts;                                    ///< principal axes; empty for the ground
   double ground_height = 0;                                   ///< of the ground only
   double radius = 0;                                          ///< of the bounding sphere about the centre of mass [m]
-  double reach = 0;                                           ///< contacts are looked for up to this distance [m]
-  double stride = 0;                                          ///< largest motion that a contact search may skip [m]
+  double reach = 0;   ///< how far it can come in a sub-step: contacts are looked for that far [m]
+  double stride = 0;  ///< largest motion that a contact search may skip [m]
   std::unique_ptr<btCollisionShape> shape;
   std::unique_ptr<btRigidBody> object;
 

@@ -32,8 +32,9 @@ struct Placed {
   int extreme(const Vec3& direction) const {
     const Vec3 local = rotation.transpose() * direction;
     int best = 0;
-    for (int i = 1; i < static_cast<int>(hull.points.size()); ++i)
-      if (local.dot(hull.points[i]) > local.dot(hull.points[best])) best = i;
+    double furthest = -std::numeric_limits<double>::infinity();
+    for (int i = 0; i < static_cast<int>(hull.points.size()); ++i)
+      if (const double along = local.dot(hull.points[i]); along > furthest) furthest = along, best = i;
     return best;
   }
 

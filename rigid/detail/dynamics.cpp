@@ -21,6 +21,8 @@ constexpr double patch_share = 0.5;
 // Free rotation turns at most this angle per integration stage [rad].
 constexpr double turn_per_stage = 0.005;
 constexpr int most_stages = 64;
+// Of the radius: contacts of bodies at rest are looked for this far.
+constexpr double least_reach = 0.01;
 // A body that was slow for so long may sleep [s].
 constexpr double quiet_time = 0.5;
 // Beyond any threshold of the solver: a point at this distance is passed over.
@@ -85,6 +87,14 @@ double deepest(const btPersistentManifold& manifold) {
   return depth;
 }
 
+// Contacts are looked for as far as a body can come in a sub-step, and a little further: in a heap at rest that leaves
+// the true neighbours only.
+double reach_of(const Body& body, double gravity, double time_step) {
+  const btRigidBody& object = *body.object;
+  const double speed = object.getLinearVelocity().length() + object.getAngularVelocity().length() * body.radius;
+  return least_reach * body.radius + (speed + gravity * time_step) * time_step;
+}
+
 // A hit in free flight, seen from the partner: `gap` away, closing at `approach`, pulled together by `pull` [m/s^2].
 struct Fall {
   double approach, pull, gap, step_before, step;
@@ -114,8 +124,9 @@ Dynamics::Dynamics(btDispatcher* dispatcher, btBroadphaseInterface* broadphase, 
 void Dynamics::updateAabbs() {
   for (int i = 0; i < m_collisionObjects.size(); ++i) {
     btCollisionObject& object = *m_collisionObjects[i];
-    const Body& body = body_of(object);
+    Body& body = body_of(object);
     if (body.is_ground() || !(getForceUpdateAllAabbs() || object.isActive())) continue;
+    body.reach = reach_of(body, m_gravity.length(), getDispatchInfo().m_timeStep);
     btVector3 low, high;
     object.getCollisionShape()->getAabb(object.getWorldTransform(), low, high);
     const btVector3 reach(body.reach, body.reach, body.reach);

@@ -73,7 +73,7 @@ class PartsAlgorithm final : public btCollisionAlgorithm {
 
   void collide(const Body& a, const Body& b) {
     const btTransform &place_a = a.object->getWorldTransform(), &place_b = b.object->getWorldTransform();
-    const double reach = std::min(a.reach, b.reach);
+    const double reach = a.reach + b.reach;
     const std::vector<Box> boxes_a = part_bounds(a), boxes_b = part_bounds(b);
     for (int i = 0; i < static_cast<int>(a.parts.size()); ++i) {
       for (int j = 0; j < static_cast<int>(b.parts.size()); ++j) {
