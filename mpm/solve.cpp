@@ -59,6 +59,33 @@ Box box_of(const std::vector<Particle>& particles, bool material) {
   return box;
 }
 
+/// Kinetic energy of the body and its partners in the frame of their common centre of mass, or in that of the fastest
+/// partner of infinite mass: what the contacts can at most turn into deformation. One partner: 1/2 m_s v^2.
+double impact_energy(double body_mass, const std::vector<Load>& loads, const std::vector<Partner>& partners) {
+  std::vector<Vec3> velocity(partners.size(), Vec3::Zero());
+  for (const Load& load : loads) {
+    Vec3& v = velocity[static_cast<std::size_t>(load.partner)];
+    if (load.approach_speed > v.norm()) v = -load.approach_speed * load.outward;
+  }
+  double mass = body_mass;
+  Vec3 moment = Vec3::Zero(), wall = Vec3::Zero();
+  bool has_wall = false;
+  for (std::size_t p = 0; p < partners.size(); ++p) {
+    if (std::isinf(partners[p].mass)) {
+      has_wall = true;
+      if (velocity[p].norm() > wall.norm()) wall = velocity[p];
+    } else {
+      mass += partners[p].mass;
+      moment += partners[p].mass * velocity[p];
+    }
+  }
+  const Vec3 frame = has_wall ? wall : Vec3(moment / mass);
+  double energy = 0.5 * body_mass * frame.squaredNorm();
+  for (std::size_t p = 0; p < partners.size(); ++p)
+    if (std::isfinite(partners[p].mass)) energy += 0.5 * partners[p].mass * (velocity[p] - frame).squaredNorm();
+  return energy;
+}
+
 /// Motion of a partner relative to its undisturbed flight.
 struct PartnerMotion {
   Vec3 displacement = Vec3::Zero(), velocity = Vec3::Zero();
@@ -145,20 +172,17 @@ Solver::Solver(const std::vector<Vec3>& points, double volume, const Material& m
   followed_ = Box(followed_.min() - room, followed_.max() + room);
   candidates_.resize((points.size() + chunk - 1) / chunk);
   partner_motion_.resize(partners.size());
-  std::vector<double> energy(partners.size(), 0.0);
+  impact_energy_ = impact_energy(body_mass_, loads, partners);
   for (const Load& load : loads) {
     const Partner& partner = partners[static_cast<std::size_t>(load.partner)];
     const double m = reduced_mass(body_mass_, partner.mass);
     loads_.emplace_back(load, body_mass_, partner, material, cell_size_, settings, particles_);
     contact_duration_ = std::max(contact_duration_, impact_duration(m, load.approach_speed, load.pair));
-    double& e = energy[static_cast<std::size_t>(load.partner)];
-    e = std::max(e, 0.5 * m * load.approach_speed * load.approach_speed);
     if (std::isfinite(partner.mass)) {
       const double stiffness = 2 * load.pair.effective_modulus * settings.smallest_patch * cell_size_;
       time_step_ = std::min(time_step_, 0.5 * std::sqrt(partner.mass / stiffness));
     }
   }
-  for (double e : energy) impact_energy_ += e;
   latest_end_ = contact_duration_ + settings.most_transits * transit_;
 }
 

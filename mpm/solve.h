@@ -85,7 +85,7 @@ struct SolveResult {
   long steps = 0;
   double particle_mass = 0;  ///< [kg]
   double work = 0;           ///< of the loads on the body less its rigid translation, largest value reached [J]
-  double impact_energy = 0;  ///< 1/2 m_s v^2 with the reduced mass of body and partners [J]
+  double impact_energy = 0;  ///< kinetic, of body and partners in their common frame: 1/2 m_s v^2 for one partner [J]
   double dissipated = 0;     ///< by damage [J]
   double damaged_share = 0;  ///< particles with damage >= 0.95 / particles
   long nuclei = 0;           ///< cracks that started in virgin material (front rules)

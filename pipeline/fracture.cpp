@@ -65,6 +65,7 @@ Pieces extract_and_cut(const FractureInput& input, const crack::DamageField& fie
     if (pieces.extraction.region_count < 2) return pieces;
     const Stopwatch watch(outcome.seconds.cut);
     pieces.cut = geometry::cut(input.mesh, pieces.extraction.boundary, {}, progress);
+    if (pieces.cut.nudges > 0) outcome.fallbacks["cut_regions_nudged"] += pieces.cut.nudges;
     if (pieces.cut.status == geometry::CutStatus::ok) return pieces;
     outcome.fallbacks["cut_retried"] += 1;
   }
@@ -113,10 +114,7 @@ FractureOutcome fracture(const FractureInput& input, Progress& progress) {
     samples = geometry::sample_solid(input.mesh, {.count = input.particles, .seed = input.seed}, progress);
   }
   auto loads = input.loads;
-  for (mpm::Load& load : loads) {
-    load.point = surface_point(samples, load);
-    outcome.load_points.push_back(load.point);
-  }
+  for (mpm::Load& load : loads) load.point = surface_point(samples, load);
   const double volume = geometry::mass_properties(input.mesh).volume;
   {
     const Stopwatch watch(outcome.seconds.solve);

@@ -39,7 +39,6 @@ struct BrokenPiece {
 struct FractureOutcome {
   std::vector<BrokenPiece> pieces;  ///< fewer than two: the body stays whole
   mpm::SolveResult solve;
-  std::vector<Vec3> load_points;  ///< where the loads were applied, in the body's frame [m]
   double damaged_share = 0, lump_share = 0, volume_error = 0;
   long particles = 0;
   StageSeconds seconds;

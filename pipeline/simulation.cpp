@@ -373,7 +373,7 @@ Momentum Simulation::push_partners(const Pose& pose, const FractureOutcome& outc
   Momentum delivered;
   for (std::size_t l = 0; l < loads.size(); ++l) {
     const Vec3 push = -outcome.solve.loads[l].impulse * (pose.orientation * loads[l].outward);
-    const Vec3 r = pose.orientation * outcome.load_points[l];
+    const Vec3 r = pose.orientation * loads[l].point;
     delivered.linear += push;
     delivered.angular += r.cross(push);
     const rigid::BodyId partner = partners[static_cast<std::size_t>(loads[l].partner)];

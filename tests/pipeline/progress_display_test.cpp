@@ -55,16 +55,16 @@ TEST(ProgressDisplay, JsonLinesAreThrottledAndEndAtAHundred) {
   EXPECT_TRUE(last["seconds_left"].is_null());
 }
 
-TEST(ProgressDisplay, ALogGetsALinePerStage) {
+TEST(ProgressDisplay, ALogGetsALineNowAndThen) {
   testing::internal::CaptureStderr();
   {
     const auto display = make_progress_display(LogFormat::text);
-    for (const char* stage : {"solve", "solve", "cut"}) display->report(stage, 0.5);
+    for (const char* stage : {"solve", "solve", "cut", "solve", "cut"}) display->report(stage, 0.5);
     display->report("total", 0.25);
-    display->report("cut", 0.75);
-    display->report("solve", 0);
+    display->report("total", 1);
   }
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "  0%  solve\n  0%  cut\n 25%  solve\n");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "  0%  solve\n100%  cut\n")
+      << "the first line, none within ten seconds, the end";
 }
 
 TEST(ProgressDisplay, SignalsCancel) {

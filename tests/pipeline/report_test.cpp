@@ -1,9 +1,9 @@
 #include "pipeline/report.h"
 
-#include <gtest/gtest.h>
-
 #include <fstream>
 #include <iterator>
+
+#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 namespace sunder::pipeline {
@@ -63,7 +63,8 @@ TEST(Report, EveryKeyIsDocumented) {
   const auto json = nlohmann::json::parse(to_json(report, broken_cup()));
   for (const auto& [key, value] : json.items()) EXPECT_NE(text.find(key), std::string::npos) << key;
   for (const auto& [key, value] : json["fractures"][0].items()) EXPECT_NE(text.find(key), std::string::npos) << key;
-  for (const auto& [key, value] : json["fragments"]["list"][0].items()) EXPECT_NE(text.find(key), std::string::npos) << key;
+  for (const auto& [key, value] : json["fragments"]["list"][0].items())
+    EXPECT_NE(text.find(key), std::string::npos) << key;
   for (const auto& [key, value] : json["seconds"].items()) EXPECT_NE(text.find(key), std::string::npos) << key;
 }
 

@@ -1,10 +1,10 @@
 /// The demo scenes end to end, at draft quality and cut short after the break, held to invariants.
 #include "pipeline/run.h"
 
-#include <gtest/gtest.h>
-
 #include <fstream>
 #include <iterator>
+
+#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <tbb/global_control.h>
 
@@ -42,7 +42,7 @@ RunResult run_quietly(const Scene& scene, const fs::path& out) {
 
 struct Demo {
   std::string name;
-  double duration;      ///< long enough for the first fracture [s]
+  double duration;  ///< long enough for the first fracture [s]
 };
 
 void PrintTo(const Demo& d, std::ostream* out) { *out << d.name; }
@@ -68,7 +68,8 @@ TEST_P(DemoScene, BreaksIntoClosedFragmentsThatAddUp) {
     if (p.parent < 0) original[p.body] = p.volume;
     EXPECT_GT(p.volume, 0) << p.name;
     EXPECT_TRUE(p.mesh.faces.size() == p.inside.size()) << p.name;
-    EXPECT_LT(geometry::mass_properties(p.mesh).centroid.norm(), 1e-9) << p.name << " is not centred on its centre of mass";
+    EXPECT_LT(geometry::mass_properties(p.mesh).centroid.norm(), 1e-9)
+        << p.name << " is not centred on its centre of mass";
   }
   for (const Piece* p : alive(sequence)) {
     volume[p->body] += p->volume;
@@ -97,7 +98,8 @@ TEST_P(DemoScene, BreaksIntoClosedFragmentsThatAddUp) {
 
 INSTANTIATE_TEST_SUITE_P(Run, DemoScene,
                          testing::Values(Demo{"plate_ball", 0.1}, Demo{"cup_drop", 0.1}, Demo{"pot_drop", 0.1},
-                                         Demo{"armadillo_drop", 0.1}, Demo{"bunny_bullet", 0.05}, Demo{"goblet_drop", 0.1}),
+                                         Demo{"armadillo_drop", 0.1}, Demo{"bunny_bullet", 0.05},
+                                         Demo{"goblet_drop", 0.1}),
                          [](const auto& demo_info) { return demo_info.param.name; });
 
 TEST(Run, TheSameSceneGivesTheSameBytesForAnyNumberOfThreads) {
@@ -146,7 +148,9 @@ TEST(Run, AnEffectThatIsOffStaysOff) {
 /// Stops as the user would, in the middle of the solve.
 class ImpatientProgress final : public Progress {
  public:
-  void report(std::string_view stage, double fraction) override { stop_ = stop_ || (stage == "solve" && fraction > 0.2); }
+  void report(std::string_view stage, double fraction) override {
+    stop_ = stop_ || (stage == "solve" && fraction > 0.2);
+  }
   bool cancelled() const override { return stop_; }
 
  private:
