@@ -208,6 +208,7 @@ std::vector<Simulation::Hit> Simulation::breaking_hits(const std::vector<rigid::
     rigid::Impact mirrored = impact;
     std::swap(mirrored.body_a, mirrored.body_b);
     mirrored.normal = -impact.normal;
+    std::swap(mirrored.arm_a, mirrored.arm_b);
     add(mirrored);
   }
   for (const auto& [pair, sum] : impulse) {
@@ -260,14 +261,14 @@ FractureInput Simulation::fracture_input(const Hit& hit, std::vector<rigid::Body
     const auto known = std::find(partner_ids.begin(), partner_ids.end(), impact.body_b);
     mpm::Load load;
     load.partner = static_cast<int>(known - partner_ids.begin());
-    load.point = pose.inverse(impact.point);
+    load.point = to_body * impact.arm_a;
     load.outward = -(to_body * impact.normal);
     load.approach_speed = impact.approach_speed;
     double inverse_radius = 1 / load.point.norm();
     const Material* other = scene_.ground ? &scene_.ground->material : nullptr;
     if (const auto partner = live_.find(impact.body_b); partner != live_.end()) {
       other = &partner->second.origin->material;
-      inverse_radius += 1 / (impact.point - world_.state(impact.body_b).pose.position).norm();
+      inverse_radius += 1 / impact.arm_b.norm();
     }
     load.pair.effective_radius = 1 / inverse_radius;
     load.pair.effective_modulus = mpm::effective_modulus(input.material.youngs_modulus, input.material.poisson_ratio,
@@ -327,7 +328,7 @@ void Simulation::solve(const Hit& hit, Progress& progress) {
   record.impulse = hit.impulse;
   account(record, outcome);
   note_coarse_grid(input.material, record);
-  if (outcome.pieces.size() >= 2) hand_over(hit, outcome, input.loads, partners, record);
+  if (outcome.pieces.size() >= 2) hand_over(hit, outcome, partners, record);
   report_.fractures.push_back(record);
   options_.on_fracture(report_.fractures.back());
 }
@@ -366,31 +367,30 @@ std::vector<Piece> Simulation::pieces_of(const Live& parent, const FractureOutco
   return pieces;
 }
 
-/// The partners take the opposite of what the solve's contacts delivered; returns that, in world axes about the body's
-/// centre of mass.
-Momentum Simulation::push_partners(const Pose& pose, const FractureOutcome& outcome,
-                                   const std::vector<mpm::Load>& loads, const std::vector<rigid::BodyId>& partners) {
+/// The partners take the opposite of what the solve's contacts delivered, where they touch the body; returns what the
+/// body got, in world axes about its centre of mass. A fast partner may have touched late in the step that was taken
+/// back: it is put where it touched.
+Momentum Simulation::push_partners(const Hit& hit, const Pose& pose, const FractureOutcome& outcome) {
   Momentum delivered;
-  for (std::size_t l = 0; l < loads.size(); ++l) {
-    const Vec3 push = -outcome.solve.loads[l].impulse * (pose.orientation * loads[l].outward);
-    const Vec3 r = pose.orientation * loads[l].point;
+  for (std::size_t l = 0; l < hit.impacts.size(); ++l) {
+    const rigid::Impact& impact = hit.impacts[l];
+    const Vec3 push = outcome.solve.loads[l].impulse * impact.normal;
     delivered.linear += push;
-    delivered.angular += r.cross(push);
-    const rigid::BodyId partner = partners[static_cast<std::size_t>(loads[l].partner)];
-    if (std::isinf(free_mass(partner))) continue;
-    rigid::BodyState other = world_.state(partner);
-    other.twist.linear -= push / free_mass(partner);
-    other.twist.angular -=
-        world_.world_inertia(partner).inverse() * (pose.position + r - other.pose.position).cross(push);
-    world_.set_state(partner, other);
+    delivered.angular += impact.arm_a.cross(push);
+    if (std::isinf(free_mass(impact.body_b))) continue;
+    rigid::BodyState other = world_.state(impact.body_b);
+    other.pose.position = pose.position + impact.arm_a - impact.arm_b;
+    other.twist.linear -= push / free_mass(impact.body_b);
+    other.twist.angular -= world_.world_inertia(impact.body_b).inverse() * impact.arm_b.cross(push);
+    world_.set_state(impact.body_b, other);
   }
   return delivered;
 }
 
 /// The body is replaced by its pieces. The pieces together get the momentum that the solve's contacts delivered, the
 /// partners the opposite; the rigid solver's own impulse was taken back with the step.
-void Simulation::hand_over(const Hit& hit, const FractureOutcome& outcome, const std::vector<mpm::Load>& loads,
-                           const std::vector<rigid::BodyId>& partners, FractureRecord& record) {
+void Simulation::hand_over(const Hit& hit, const FractureOutcome& outcome, const std::vector<rigid::BodyId>& partners,
+                           FractureRecord& record) {
   const Live parent = live_.at(hit.body);
   const rigid::BodyState state = world_.state(hit.body);
   const Quat& q = state.pose.orientation;
@@ -407,7 +407,7 @@ void Simulation::hand_over(const Hit& hit, const FractureOutcome& outcome, const
     return sum;
   };
   record.kinetic_before = energy_of(hit.body) + partners_energy();
-  twists = with_momentum(parts, twists, push_partners(state.pose, outcome, loads, partners));
+  twists = with_momentum(parts, twists, push_partners(hit, state.pose, outcome));
   const double available = record.kinetic_before - partners_energy();
   for (std::size_t k = 0; k < parts.size(); ++k) {
     twists[k].linear += state.twist.at(parts[k].centre);

@@ -61,10 +61,9 @@ class Simulation {
   FractureInput fracture_input(const Hit& hit, std::vector<rigid::BodyId>& partner_ids) const;
   void account(const FractureRecord& record, const FractureOutcome& outcome);
   std::vector<Piece> pieces_of(const Live& parent, const FractureOutcome& outcome, std::vector<RigidPart>& parts) const;
-  Momentum push_partners(const Pose& pose, const FractureOutcome& outcome, const std::vector<mpm::Load>& loads,
-                         const std::vector<rigid::BodyId>& partners);
-  void hand_over(const Hit& hit, const FractureOutcome& outcome, const std::vector<mpm::Load>& loads,
-                 const std::vector<rigid::BodyId>& partners, FractureRecord& record);
+  Momentum push_partners(const Hit& hit, const Pose& pose, const FractureOutcome& outcome);
+  void hand_over(const Hit& hit, const FractureOutcome& outcome, const std::vector<rigid::BodyId>& partners,
+                 FractureRecord& record);
   void note_coarse_grid(const Material& material, const FractureRecord& record);
 
   const Scene& scene_;

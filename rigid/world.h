@@ -41,8 +41,11 @@ struct Impact {
   BodyId body_a = 0, body_b = 0;  ///< body_b may be ground_id
   Vec3 point = Vec3::Zero();      ///< impulse-weighted mean of the contact points, world [m]
   Vec3 normal = Vec3::Zero();     ///< unit, from b towards a: the push on a
-  double impulse = 0;             ///< normal impulse of the step, a gets +impulse * normal [N s]
-  double approach_speed = 0;      ///< normal speed of approach of the two bodies at `point` before the step, > 0 [m/s]
+  /// From the centres of mass to the point at the moment of contact, which may lie anywhere within the step; of the
+  /// ground: zero [m].
+  Vec3 arm_a = Vec3::Zero(), arm_b = Vec3::Zero();
+  double impulse = 0;         ///< normal impulse of the step, a gets +impulse * normal [N s]
+  double approach_speed = 0;  ///< normal speed of approach of the two bodies at `point` before the step, > 0 [m/s]
 };
 
 struct WorldSettings {

@@ -95,6 +95,10 @@ double reach_of(const Body& body, double gravity, double time_step) {
   return least_reach * body.radius + (speed + gravity * time_step) * time_step;
 }
 
+Vec3 arm_of(const Body& body, const Vec3& point) {
+  return body.is_ground() ? Vec3(Vec3::Zero()) : Vec3(point - to_eigen(body.object->getCenterOfMassPosition()));
+}
+
 // A hit in free flight, seen from the partner: `gap` away, closing at `approach`, pulled together by `pull` [m/s^2].
 struct Fall {
   double approach, pull, gap, step_before, step;
@@ -235,8 +239,9 @@ void Dynamics::harvest() {
     const Body &a = body_of(*p.manifold->getBody0()), &b = body_of(*p.manifold->getBody1());
     const Vec3 where = to_eigen((p.point->m_positionWorldOnA + p.point->m_positionWorldOnB) / 2);
     if (p.acts && p.point->m_appliedImpulse > 0)
-      log_.samples.push_back({a.id, b.id, where, p.normal, p.point->m_appliedImpulse, p.approach,
-                              patch_share * std::min(a.radius, b.radius), log_.sub_step});
+      log_.samples.push_back({a.id, b.id, where, p.normal, arm_of(a, where), arm_of(b, where),
+                              p.point->m_appliedImpulse, p.approach, patch_share * std::min(a.radius, b.radius),
+                              log_.sub_step});
     p.point->setDistance(p.distance);
     if (p.hits) p.point->m_appliedImpulse = 0;
   }

@@ -46,8 +46,12 @@ Impact impact_of(const Patch& patch) {
     impact.impulse += s.impulse;
     impact.point += s.impulse * s.point;
     impact.normal += s.impulse * s.normal;
+    impact.arm_a += s.impulse * s.arm_a;
+    impact.arm_b += s.impulse * s.arm_b;
   }
   impact.point /= impact.impulse;
+  impact.arm_a /= impact.impulse;
+  impact.arm_b /= impact.impulse;
   impact.normal.normalize();
   impact.approach_speed = fastest_approach(patch);
   return impact;

@@ -10,7 +10,8 @@ namespace sunder::rigid::detail {
 struct ContactSample {
   BodyId body_a = 0, body_b = 0;
   Vec3 point = Vec3::Zero();
-  Vec3 normal = Vec3::Zero();  ///< from b towards a
+  Vec3 normal = Vec3::Zero();                       ///< from b towards a
+  Vec3 arm_a = Vec3::Zero(), arm_b = Vec3::Zero();  ///< from the centres of mass to the point
   double impulse = 0;
   double approach_speed = 0;  ///< before the sub-step
   double patch_size = 0;      ///< points of the pair closer than this are one patch [m]
