@@ -1,5 +1,6 @@
 #include "pipeline/handover.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Cholesky>
@@ -74,6 +75,41 @@ std::vector<Twist> with_energy_limit(const std::vector<RigidPart>& parts, const 
     rigid[k].angular += scale * (twists[k].angular - rigid[k].angular);
   }
   return rigid;
+}
+
+namespace {
+
+/// Energy of the motion that a momentum gives to a part at rest.
+double response_energy(const RigidPart& part, const Momentum& m) {
+  return 0.5 * (m.linear.squaredNorm() / part.mass + m.angular.dot(part.inertia.ldlt().solve(m.angular)));
+}
+
+}  // namespace
+
+double affordable_share(const RigidPart& body, const Twist& body_twist, const std::vector<RigidPart>& partners,
+                        const std::vector<Twist>& partner_twists, const std::vector<Push>& pushes) {
+  // The energy over the share s is E(0) + power s + response s^2.
+  double power = 0;
+  Momentum on_body;
+  std::vector<Momentum> on_partner(partners.size());
+  for (const Push& push : pushes) {
+    on_body.linear += push.impulse;
+    on_body.angular += push.arm.cross(push.impulse);
+    power += push.impulse.dot(body_twist.at(push.arm));
+    if (push.partner < 0) continue;
+    const std::size_t p = static_cast<std::size_t>(push.partner);
+    on_partner[p].linear -= push.impulse;
+    on_partner[p].angular -= push.partner_arm.cross(push.impulse);
+    power -= push.impulse.dot(partner_twists[p].at(push.partner_arm));
+  }
+  double response = response_energy(body, on_body);
+  for (std::size_t p = 0; p < partners.size(); ++p) response += response_energy(partners[p], on_partner[p]);
+  return power + response > 0 ? std::clamp(-power / response, 0.0, 1.0) : 1.0;
+}
+
+double effective_mass(const RigidPart& part, const Vec3& arm, const Vec3& direction) {
+  const Vec3 lever = arm.cross(direction);
+  return 1 / (1 / part.mass + lever.dot(part.inertia.ldlt().solve(lever)));
 }
 
 }  // namespace sunder::pipeline

@@ -33,4 +33,22 @@ std::vector<Twist> with_momentum(const std::vector<RigidPart>& parts, std::vecto
 std::vector<Twist> with_energy_limit(const std::vector<RigidPart>& parts, const std::vector<Twist>& twists,
                                      double limit);
 
+/// An impulse between a body and one of its partners at a contact; the partner gets the opposite.
+struct Push {
+  Vec3 impulse = Vec3::Zero();      ///< on the body [N s]
+  Vec3 arm = Vec3::Zero();          ///< from the body's centre of mass to the contact [m]
+  Vec3 partner_arm = Vec3::Zero();  ///< from the partner's centre of mass to the contact [m]
+  int partner = -1;                 ///< index of the partner; -1: it does not yield
+};
+
+/// Largest share in [0, 1] of all pushes with which body and partners, moving rigidly, have no more kinetic energy than
+/// before. Contacts that are solved side by side do not know of each other, so together they may push more than there
+/// is energy for. Parts are in world axes about their own centres of mass.
+double affordable_share(const RigidPart& body, const Twist& body_twist, const std::vector<RigidPart>& partners,
+                        const std::vector<Twist>& partner_twists, const std::vector<Push>& pushes);
+
+/// Mass [kg] with which a body answers a push along the unit `direction` at `arm`: 1 / (1/m + n . ((I^-1 (r x n)) x
+/// r)).
+double effective_mass(const RigidPart& part, const Vec3& arm, const Vec3& direction);
+
 }  // namespace sunder::pipeline

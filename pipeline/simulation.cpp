@@ -177,9 +177,13 @@ rigid::Motion Simulation::motion_of(const Live& live) const {
   return piece_of(live).generation > 0 ? rigid::Motion::dynamic : live.origin->motion;
 }
 
+/// About its own centre of mass, in world axes.
+RigidPart Simulation::world_part(rigid::BodyId id) const {
+  return {world_.mass(id), Vec3::Zero(), world_.world_inertia(id)};
+}
+
 double Simulation::energy_of(rigid::BodyId id) const {
-  if (std::isinf(free_mass(id))) return 0;
-  return kinetic_energy({{world_.mass(id), Vec3::Zero(), world_.world_inertia(id)}}, {world_.state(id).twist});
+  return std::isinf(free_mass(id)) ? 0 : kinetic_energy({world_part(id)}, {world_.state(id).twist});
 }
 
 /// Not set in the scene: the impulse whose energy could just open one crack of area V^(2/3).
@@ -277,7 +281,9 @@ FractureInput Simulation::fracture_input(const Hit& hit, std::vector<rigid::Body
     input.loads.push_back(load);
     if (known != partner_ids.end()) continue;
     partner_ids.push_back(impact.body_b);
-    input.partners.push_back({free_mass(impact.body_b)});
+    const bool yields = std::isfinite(free_mass(impact.body_b));
+    input.partners.push_back({yields ? effective_mass(world_part(impact.body_b), impact.arm_b, impact.normal)
+                                     : std::numeric_limits<double>::infinity()});
   }
   input.solve.damage = scene_.fracture.damage == DamageModel::front ? mpm::DamageModel::front : mpm::DamageModel::local;
   input.solve.load = scene_.fracture.load == LoadModel::contact ? mpm::LoadModel::contact : mpm::LoadModel::prescribed;
@@ -367,24 +373,48 @@ std::vector<Piece> Simulation::pieces_of(const Live& parent, const FractureOutco
   return pieces;
 }
 
-/// The partners take the opposite of what the solve's contacts delivered, where they touch the body; returns what the
-/// body got, in world axes about its centre of mass. A fast partner may have touched late in the step that was taken
-/// back: it is put where it touched.
-Momentum Simulation::push_partners(const Hit& hit, const Pose& pose, const FractureOutcome& outcome) {
-  Momentum delivered;
+/// What the solve's contacts delivered, scaled to what body and partners can afford.
+std::vector<Push> Simulation::pushes_of(const Hit& hit, const FractureOutcome& outcome,
+                                        const std::vector<rigid::BodyId>& partners) {
+  std::vector<Push> pushes;
+  std::vector<RigidPart> parts;
+  std::vector<Twist> twists;
+  std::vector<int> index(partners.size(), -1);
+  bool driven = motion_of(live_.at(hit.body)) != rigid::Motion::dynamic;
+  for (std::size_t p = 0; p < partners.size(); ++p) {
+    driven = driven || (live_.contains(partners[p]) && motion_of(live_.at(partners[p])) == rigid::Motion::kinematic);
+    if (std::isinf(free_mass(partners[p]))) continue;
+    index[p] = static_cast<int>(parts.size());
+    parts.push_back(world_part(partners[p]));
+    twists.push_back(world_.state(partners[p]).twist);
+  }
   for (std::size_t l = 0; l < hit.impacts.size(); ++l) {
     const rigid::Impact& impact = hit.impacts[l];
-    const Vec3 push = outcome.solve.loads[l].impulse * impact.normal;
-    delivered.linear += push;
-    delivered.angular += impact.arm_a.cross(push);
-    if (std::isinf(free_mass(impact.body_b))) continue;
-    rigid::BodyState other = world_.state(impact.body_b);
-    other.pose.position = pose.position + impact.arm_a - impact.arm_b;
-    other.twist.linear -= push / free_mass(impact.body_b);
-    other.twist.angular -= world_.world_inertia(impact.body_b).inverse() * impact.arm_b.cross(push);
-    world_.set_state(impact.body_b, other);
+    const auto partner = std::find(partners.begin(), partners.end(), impact.body_b) - partners.begin();
+    pushes.push_back({outcome.solve.loads[l].impulse * impact.normal, impact.arm_a, impact.arm_b,
+                      index[static_cast<std::size_t>(partner)]});
   }
-  return delivered;
+  // What a driven or held body does or takes is not in the balance.
+  const double share =
+      driven ? 1.0 : affordable_share(world_part(hit.body), world_.state(hit.body).twist, parts, twists, pushes);
+  if (share < 1) ++report_.fallbacks["impulse_limited"];
+  for (Push& push : pushes) push.impulse *= share;
+  return pushes;
+}
+
+/// The partners take their pushes where they touch the body. A fast partner may have touched late in the step that was
+/// taken back: it is put where it touched.
+void Simulation::push_partners(const Hit& hit, const std::vector<Push>& pushes) {
+  const Vec3 centre = world_.state(hit.body).pose.position;
+  for (std::size_t l = 0; l < pushes.size(); ++l) {
+    const rigid::BodyId id = hit.impacts[l].body_b;
+    if (pushes[l].partner < 0) continue;
+    rigid::BodyState other = world_.state(id);
+    other.pose.position = centre + pushes[l].arm - pushes[l].partner_arm;
+    other.twist.linear -= pushes[l].impulse / free_mass(id);
+    other.twist.angular -= world_.world_inertia(id).inverse() * pushes[l].partner_arm.cross(pushes[l].impulse);
+    world_.set_state(id, other);
+  }
 }
 
 /// The body is replaced by its pieces. The pieces together get the momentum that the solve's contacts delivered, the
@@ -407,18 +437,20 @@ void Simulation::hand_over(const Hit& hit, const FractureOutcome& outcome, const
     return sum;
   };
   record.kinetic_before = energy_of(hit.body) + partners_energy();
-  twists = with_momentum(parts, twists, push_partners(hit, state.pose, outcome));
+  const std::vector<Push> pushes = pushes_of(hit, outcome, partners);
+  push_partners(hit, pushes);
+  Momentum delivered;
+  for (const Push& push : pushes) {
+    delivered.linear += push.impulse;
+    delivered.angular += push.arm.cross(push.impulse);
+  }
+  twists = with_momentum(parts, twists, delivered);
   const double available = record.kinetic_before - partners_energy();
   for (std::size_t k = 0; k < parts.size(); ++k) {
     twists[k].linear += state.twist.at(parts[k].centre);
     twists[k].angular += state.twist.angular;
   }
-  // What a driven or held body does or takes is not in the balance.
-  const bool closed = motion_of(parent) == rigid::Motion::dynamic &&
-                      std::none_of(partners.begin(), partners.end(), [&](rigid::BodyId id) {
-                        return live_.contains(id) && motion_of(live_.at(id)) == rigid::Motion::kinematic;
-                      });
-  if (closed && kinetic_energy(parts, twists) > available) {
+  if (motion_of(parent) == rigid::Motion::dynamic && kinetic_energy(parts, twists) > available) {
     twists = with_energy_limit(parts, twists, available);
     ++report_.fallbacks["fragment_energy_limited"];
   }

@@ -54,6 +54,7 @@ class Simulation {
   bool may_break(const Live& live, double now) const;
   rigid::Motion motion_of(const Live& live) const;
   double free_mass(rigid::BodyId id) const;
+  RigidPart world_part(rigid::BodyId id) const;
   double energy_of(rigid::BodyId id) const;
   double minimum_impulse(const Live& live, double partner_mass) const;
   const Piece& piece_of(const Live& live) const;
@@ -61,7 +62,9 @@ class Simulation {
   FractureInput fracture_input(const Hit& hit, std::vector<rigid::BodyId>& partner_ids) const;
   void account(const FractureRecord& record, const FractureOutcome& outcome);
   std::vector<Piece> pieces_of(const Live& parent, const FractureOutcome& outcome, std::vector<RigidPart>& parts) const;
-  Momentum push_partners(const Hit& hit, const Pose& pose, const FractureOutcome& outcome);
+  std::vector<Push> pushes_of(const Hit& hit, const FractureOutcome& outcome,
+                              const std::vector<rigid::BodyId>& partners);
+  void push_partners(const Hit& hit, const std::vector<Push>& pushes);
   void hand_over(const Hit& hit, const FractureOutcome& outcome, const std::vector<rigid::BodyId>& partners,
                  FractureRecord& record);
   void note_coarse_grid(const Material& material, const FractureRecord& record);

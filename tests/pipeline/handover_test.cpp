@@ -84,5 +84,25 @@ TEST(Handover, ALimitThatEvenRigidMotionExceedsGivesRigidMotion) {
   for (std::size_t k = 0; k < twists.size(); ++k) EXPECT_LE((twists[k].linear - rigid[k].linear).norm(), rounding);
 }
 
+TEST(Handover, AHeadOnPushIsAffordableUpToAnElasticBounce) {
+  const RigidPart ball{1.0, Vec3::Zero(), Mat3::Identity()}, block{3.0, Vec3::Zero(), Mat3::Identity()};
+  const Twist flies{Vec3(4, 0, 0), Vec3::Zero()}, rests;
+  // An elastic bounce passes on 2 m_s v = 2 * 3/4 * 4 N s.
+  const auto share = [&](double impulse) {
+    return affordable_share(block, rests, {ball}, {flies}, {{Vec3(impulse, 0, 0), Vec3::Zero(), Vec3::Zero(), 0}});
+  };
+  EXPECT_DOUBLE_EQ(share(5.9), 1);
+  EXPECT_NEAR(share(12), 0.5, rounding);
+  EXPECT_DOUBLE_EQ(share(-1), 0) << "pushing against the motion only adds energy";
+}
+
+TEST(Handover, EffectiveMassAtTheEndOfARod) {
+  // A thin rod answers a push across its end with a quarter of its mass.
+  const double m = 2, length = 0.6, about_centre = m * length * length / 12;
+  const RigidPart rod{m, Vec3::Zero(), Vec3(about_centre, about_centre, 1e-9).asDiagonal()};
+  EXPECT_NEAR(effective_mass(rod, Vec3(0, 0, length / 2), Vec3::UnitY()), m / 4, rounding);
+  EXPECT_DOUBLE_EQ(effective_mass(rod, Vec3(0, 0, length / 2), Vec3::UnitZ()), m);
+}
+
 }  // namespace
 }  // namespace sunder::pipeline
