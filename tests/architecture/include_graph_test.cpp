@@ -31,7 +31,7 @@ const std::map<std::string, std::set<std::string>> libraries = {
     {"mpm", {"tbb"}},
     {"crack", {"voro++"}},
     {"rigid", {"btBulletDynamicsCommon.h", "btBulletCollisionCommon.h", "BulletCollision", "BulletDynamics", "LinearMath"}},
-    {"pipeline", {"CLI", "toml++", "nlohmann", "spdlog", "tiny_gltf.h", "tbb"}},
+    {"pipeline", {"CLI", "toml++", "nlohmann", "tiny_gltf.h", "tbb"}},
 };
 
 struct Include {
