@@ -1,0 +1,91 @@
+/// The exit codes that README.md promises.
+#include "pipeline/command_line.h"
+
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace sunder::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Outcome {
+  int code;
+  std::string out, err;
+};
+
+Outcome sunder(std::vector<std::string> words) {
+  words.insert(words.begin(), "sunder");
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  const int code = command_line(static_cast<int>(argv.size()), argv.data());
+  return {code, testing::internal::GetCapturedStdout(), testing::internal::GetCapturedStderr()};
+}
+
+class CommandLine : public testing::Test {
+ protected:
+  void SetUp() override { fs::create_directories(folder_); }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::string file(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+    return (folder_ / name).string();
+  }
+
+  const fs::path folder_ = fs::path(testing::TempDir()) / ("sunder_command_line_" + std::to_string(getpid()));
+  const std::string body_ = "[[body]]\nname = \"x\"\nmaterial = \"glass\"\nheight = 0.1\nmesh = ";
+};
+
+TEST_F(CommandLine, WrongUsageIsTwo) {
+  EXPECT_EQ(sunder({}).code, 2);
+  EXPECT_EQ(sunder({"rum", "a.toml"}).code, 2);
+  EXPECT_EQ(sunder({"run"}).code, 2);
+  EXPECT_EQ(sunder({"run", "a.toml", "--quality", "superb"}).code, 2);
+  EXPECT_EQ(sunder({"run", "a.toml", "--threads", "0"}).code, 2);
+  EXPECT_EQ(sunder({"run", (folder_ / "none.toml").string()}).code, 2);
+}
+
+TEST_F(CommandLine, AMistakeInTheSceneIsTwoAndNamesTheLine) {
+  const Outcome outcome =
+      sunder({"run", file("typo.toml", body_ + "\"cup\"\nvelocty = [0, 0, 0]\n"), "--out", (folder_ / "out").string()});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("typo.toml:6"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("'velocity'"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(fs::exists(folder_ / "out" / "report.json"));
+}
+
+TEST_F(CommandLine, AMeshThatCannotBeUsedIsThreeAndNamesTheDefect) {
+  file("sheet.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const Outcome outcome =
+      sunder({"run", file("sheet.toml", body_ + "\"sheet.obj\"\n"), "--out", (folder_ / "out").string()});
+  EXPECT_EQ(outcome.code, 3) << outcome.err;
+  EXPECT_NE(outcome.err.find("boundary edge"), std::string::npos) << outcome.err;
+  EXPECT_EQ(sunder({"inspect", (folder_ / "sheet.obj").string()}).code, 3);
+}
+
+TEST_F(CommandLine, AFileThatCannotBeReadIsFive) {
+  EXPECT_EQ(sunder({"inspect", (folder_ / "none.obj").string()}).code, 5);
+}
+
+TEST_F(CommandLine, JsonErrorsCarryTheCode) {
+  const Outcome outcome = sunder({"run", (folder_ / "none.toml").string(), "--log", "json"});
+  EXPECT_NE(outcome.out.find("\"code\":2"), std::string::npos) << outcome.out;
+}
+
+TEST_F(CommandLine, AValidSceneChecksAndRuns) {
+  const std::string scene = file("still.toml", "[scene]\nduration = 0.1\n" + body_ + "\"cup\"\n");
+  EXPECT_EQ(sunder({"check", scene}).code, 0);
+  const Outcome outcome =
+      sunder({"run", scene, "--out", (folder_ / "out").string(), "--quality", "draft", "--seed", "3"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_TRUE(fs::exists(folder_ / "out" / "still.0001.obj"));
+  EXPECT_TRUE(fs::exists(folder_ / "out" / "report.json"));
+}
+
+}  // namespace
+}  // namespace sunder::pipeline
