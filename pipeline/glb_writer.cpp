@@ -45,7 +45,6 @@ class Builder {
   tinygltf::Model build() {
     model_.asset.version = "2.0";
     model_.asset.generator = "Sunder";
-    add_materials();
     const std::vector<detail::Track> tracks = detail::tracks(sequence_);
     model_.scenes.resize(1);
     model_.scenes[0].name = sequence_.name;
@@ -57,22 +56,19 @@ class Builder {
   }
 
  private:
-  void add_materials() {
-    for (const std::string& name : detail::material_names(sequence_)) {
-      const detail::Look look = detail::look_of(name);
-      material_index_[name] = static_cast<int>(model_.materials.size());
-      add_material(name + "_outside", look.outside, look);
-      add_material(name + "_inside", look.inside, look);
-    }
-  }
-
-  void add_material(const std::string& name, const std::array<double, 3>& colour, const detail::Look& look) {
-    tinygltf::Material material;
-    material.name = name;
-    material.pbrMetallicRoughness.baseColorFactor = {colour[0], colour[1], colour[2], 1};
-    material.pbrMetallicRoughness.metallicFactor = look.metallic;
-    material.pbrMetallicRoughness.roughnessFactor = look.roughness;
-    model_.materials.push_back(material);
+  // Added when first used: validators complain of materials that nothing wears.
+  int material(const std::string& name, bool inside) {
+    const auto [entry, is_new] = material_index_.try_emplace({name, inside}, static_cast<int>(model_.materials.size()));
+    if (!is_new) return entry->second;
+    const detail::Look look = detail::look_of(name);
+    const std::array<double, 3>& colour = inside ? look.inside : look.outside;
+    tinygltf::Material added;
+    added.name = name + (inside ? "_inside" : "_outside");
+    added.pbrMetallicRoughness.baseColorFactor = {colour[0], colour[1], colour[2], 1};
+    added.pbrMetallicRoughness.metallicFactor = look.metallic;
+    added.pbrMetallicRoughness.roughnessFactor = look.roughness;
+    model_.materials.push_back(added);
+    return entry->second;
   }
 
   // Appends values to the view as a new accessor and returns its index.
@@ -125,7 +121,7 @@ class Builder {
     primitive.indices = piece.mesh.vertices.size() <= 65535
                             ? add_indices<std::uint16_t>(faces, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT)
                             : add_indices<std::uint32_t>(faces, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT);
-    primitive.material = material_index_.at(piece.material) + (inside ? 1 : 0);
+    primitive.material = material(piece.material, inside);
     primitive.mode = TINYGLTF_MODE_TRIANGLES;
     mesh.primitives.push_back(primitive);
   }
@@ -244,7 +240,7 @@ class Builder {
   tinygltf::Animation animation_;
   View positions_, indices_, motion_;
   int view_count_ = 0;
-  std::map<std::string, int> material_index_;  // of <material>_outside; _inside follows
+  std::map<std::pair<std::string, bool>, int> material_index_;  // by material name and whether inside
   std::map<std::vector<float>, int> times_index_;
 };
 
