@@ -21,4 +21,9 @@ Box bounds(const TriangleMesh& mesh);
 /// x -> linear * x + offset. A reflection turns the faces so that they keep pointing outward.
 TriangleMesh transformed(const TriangleMesh& mesh, const Mat3& linear, const Vec3& offset);
 
+/// True when the faces are a closed, consistently turned two-manifold: every directed edge occurs once and so does its
+/// opposite, and the faces around every vertex are one fan. Says nothing of self-intersections (see inspect). False for
+/// a mesh without faces.
+bool is_closed_two_manifold(const TriangleMesh& mesh);
+
 }  // namespace sunder::geometry

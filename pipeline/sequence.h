@@ -23,7 +23,7 @@ struct Piece {
   geometry::TriangleMesh mesh;                                  ///< in its own frame: origin at the centre of mass
   std::vector<bool> inside;                                     ///< per face: made by a crack
   double volume = 0, area = 0, mass = 0;
-  bool closed = true;
+  bool closed = false;  ///< a closed two-manifold
   std::string material;
 };
 

@@ -23,6 +23,7 @@ Sequence broken_cup() {
   shard.birth_time = 0.1;
   shard.volume = 2e-6;
   shard.mass = 5e-3;
+  shard.closed = true;
   sequence.pieces = {cup, shard};
   sequence.frames.resize(3);
   return sequence;
