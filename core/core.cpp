@@ -1,3 +1,4 @@
+// The headers are inline; this file makes them a library and compiles each of them once on its own.
 #include "core/error.h"
 #include "core/progress.h"
 #include "core/random.h"
