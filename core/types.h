@@ -1,10 +1,11 @@
 #pragma once
 /// The few types that every module shares. SI units everywhere.
-#include <Eigen/Core>
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 namespace sunder {
 

@@ -10,14 +10,14 @@ namespace sunder::geometry {
 enum class UpAxis { x, y, z };
 
 struct LoadSettings {
-  double metres_per_unit = 1;     ///< length of one unit of the file [m]
-  UpAxis up = UpAxis::y;          ///< the file's up axis; the result is Y-up, handedness kept
+  double metres_per_unit = 1;  ///< length of one unit of the file [m]
+  UpAxis up = UpAxis::y;       ///< the file's up axis; the result is Y-up, handedness kept
 };
 
-/// Reads any format that assimp reads; all meshes of the file become one, node transforms applied, polygons triangulated and
-/// coincident vertices welded (bit-equal positions only: `repair` does more).
-/// Errors: ErrorKind::io when the file is missing or unreadable (with assimp's reason), ErrorKind::mesh when it holds no triangle or
-/// a position that is not finite.
+/// Reads any format that assimp reads; all meshes of the file become one, node transforms applied, polygons
+/// triangulated and coincident vertices welded (bit-equal positions only: `repair` does more). Errors: ErrorKind::io
+/// when the file is missing or unreadable (with assimp's reason), ErrorKind::mesh when it holds no triangle or a
+/// position that is not finite.
 TriangleMesh load_mesh(const std::filesystem::path& file, const LoadSettings& settings = {});
 
 /// Writes a binary-exact (17 digits) OFF or OBJ by extension; for tests and for looking. Errors: ErrorKind::io.

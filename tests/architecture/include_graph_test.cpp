@@ -1,6 +1,4 @@
 /// The include graph points down only, and no third-party type leaves a module.
-#include <gtest/gtest.h>
-
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -8,6 +6,8 @@
 #include <set>
 #include <string>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 namespace {
 
@@ -30,7 +30,8 @@ const std::map<std::string, std::set<std::string>> libraries = {
     {"geometry", {"CGAL", "openvdb", "assimp", "boost", "tbb"}},
     {"mpm", {"tbb"}},
     {"crack", {"voro++"}},
-    {"rigid", {"btBulletDynamicsCommon.h", "btBulletCollisionCommon.h", "BulletCollision", "BulletDynamics", "LinearMath"}},
+    {"rigid",
+     {"btBulletDynamicsCommon.h", "btBulletCollisionCommon.h", "BulletCollision", "BulletDynamics", "LinearMath"}},
     {"pipeline", {"CLI", "toml++", "nlohmann", "tiny_gltf.h", "tbb"}},
 };
 
@@ -97,7 +98,8 @@ TEST(IncludeGraph, LibrariesStayBehindTheirModule) {
       for (const Include& include : includes_of(file)) {
         if (include.quoted || is_standard(include.target) || is_system(include.target)) continue;
         const std::string library = first_component(include.target);
-        EXPECT_TRUE(library == "Eigen" || libraries.at(module).contains(library)) << file << " includes <" << include.target << ">";
+        EXPECT_TRUE(library == "Eigen" || libraries.at(module).contains(library))
+            << file << " includes <" << include.target << ">";
       }
 }
 
