@@ -5,7 +5,6 @@
 #include <cstdio>
 
 #include "geometry/convex_parts.h"
-#include "geometry/mass_properties.h"
 #include "geometry/primitives.h"
 #include "pipeline/detail/piece_mesh.h"
 #include "pipeline/quality.h"
@@ -61,12 +60,12 @@ Simulation::Simulation(const Scene& scene, const RunOptions& options, Progress& 
   const Stopwatch watch(report_.seconds.setup);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     progress.checkpoint("setup", static_cast<double>(b) / static_cast<double>(scene.bodies.size()));
-    place(scene.bodies[b], static_cast<int>(b), progress);
+    place(scene.bodies[b], static_cast<int>(b));
   }
   require_no_overlap();
 }
 
-void Simulation::place(const SceneBody& body, int index, Progress&) {
+void Simulation::place(const SceneBody& body, int index) {
   BodyMesh source = body_mesh(body);
   if (!source.repairs.empty()) report_.repairs.push_back({body.name, source.repairs});
   Piece piece;
@@ -211,16 +210,19 @@ std::vector<Simulation::Hit> Simulation::breaking_hits(const std::vector<rigid::
   return independent;
 }
 
+std::vector<rigid::Impact> Simulation::step_world() {
+  const Stopwatch watch(report_.seconds.rigid);
+  return world_.step();
+}
+
 void Simulation::step(Progress& progress) {
+  if (!scene_.effects.fracture) {
+    step_world();
+    return;
+  }
   for (;;) {
     const auto before = world_.snapshot();
-    std::vector<rigid::Impact> impacts;
-    {
-      const Stopwatch watch(report_.seconds.rigid);
-      impacts = world_.step();
-      if (!scene_.effects.fracture) return;
-    }
-    const auto hits = breaking_hits(impacts, before.time);
+    const auto hits = breaking_hits(step_world(), before.time);
     if (hits.empty()) return;
     world_.restore(before);
     for (const Hit& hit : hits) solve(hit, progress);

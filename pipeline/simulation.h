@@ -47,7 +47,8 @@ class Simulation {
     double impulse = 0, severity = 0;
   };
 
-  void place(const SceneBody& body, int index, Progress& progress);
+  void place(const SceneBody& body, int index);
+  std::vector<rigid::Impact> step_world();
   void require_no_overlap() const;
   rigid::BodyId add_body(const Piece& piece, const Live& live, const Pose& pose, const Twist& twist, int family);
   std::vector<Hit> breaking_hits(const std::vector<rigid::Impact>& impacts, double now) const;
