@@ -54,3 +54,20 @@ function(sunder_version_header)
   target_include_directories(sunder_pipeline PRIVATE ${PROJECT_BINARY_DIR}/generated)
   add_dependencies(sunder_pipeline sunder_version_header)
 endfunction()
+
+# The pass over a block of particles once per instruction set; the best of the machine is chosen when the program runs.
+# FMA is explicit in no source: both sets that have it contract the same expressions, so they give the same bits.
+function(sunder_instruction_sets)
+  set(portable -march=x86-64 -Wno-psabi)
+  set(avx2 -march=x86-64-v3)
+  set(avx512 -march=x86-64-v4 -mprefer-vector-width=512)
+  foreach(set portable avx2 avx512)
+    set(source ${PROJECT_SOURCE_DIR}/mpm/detail/block_pass_${set}.cpp)
+    if(CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")
+      set_source_files_properties(${source} PROPERTIES COMPILE_OPTIONS
+        "${${set}};-ffp-contract=fast;-fno-math-errno;-fno-trapping-math")
+    elseif(NOT set STREQUAL portable)
+      set_source_files_properties(${source} PROPERTIES HEADER_FILE_ONLY ON)
+    endif()
+  endforeach()
+endfunction()

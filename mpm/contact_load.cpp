@@ -24,17 +24,16 @@ double impact_duration(double m, double v, const ContactPair& pair) {
   return time;
 }
 
-ContactLoad::ContactLoad(const Load& load, double body_mass, const Partner& partner, const Material& body,
-                         double cell_size, const SolveSettings& settings, const std::vector<Particle>& particles)
+ContactLoad::ContactLoad(const Load& load, double body_mass, const Partner& partner, const Material& material,
+                         const SolveSettings& settings, const Continuum& body)
     : load_(load),
       contact_(load.pair),
       model_(settings.load),
-      cell_size_(cell_size),
-      patch_(particles, load.point, load.outward, settings.smallest_patch * cell_size, cell_size) {
+      patch_(body, load.point, load.outward, settings.smallest_patch * body.cell_size()) {
   // The patch of the solve already gives way by about 0.6 chi F / (E* a), chi the body's share of E*: the contact law
   // adds it back.
   const double share =
-      load.pair.effective_modulus * (1 - body.poisson_ratio * body.poisson_ratio) / body.youngs_modulus;
+      load.pair.effective_modulus * (1 - material.poisson_ratio * material.poisson_ratio) / material.youngs_modulus;
   patch_compliance_ = 0.6 * share / load.pair.effective_modulus;
   const double m = reduced_mass(body_mass, partner.mass);
   prescribed_duration_ = hertz_duration(m, load.approach_speed, load.pair);
@@ -43,21 +42,38 @@ ContactLoad::ContactLoad(const Load& load, double body_mass, const Partner& part
   prescribed_peak_ = 2 * m * load.approach_speed / (prescribed_duration_ * mean);
 }
 
+/// The indentation d that the contact law sees is the approach and what the patch has already given way:
+/// d = approach + min(c F(d), 0.8 d_elastic(F(d))). The right side grows slower than d, and d_elastic <= d, so the one
+/// root lies in [approach, 5 approach]; it is closed in on from both sides.
 double ContactLoad::contact_force(double approach) {
   if (approach <= 0) return 0;
   const double compliance = patch_compliance_ / patch_.radius();
-  double d = approach;
-  for (int turn = 0; turn < 12; ++turn) {
+  const auto excess = [&](double d) {
     const double f = contact_.force(d);
-    d = 0.5 * d + 0.5 * (approach + std::min(compliance * f, 0.8 * contact_.elastic_indentation(f)));
+    return approach + std::min(compliance * f, 0.8 * contact_.elastic_indentation(f)) - d;
+  };
+  double low = approach, high = 5 * approach, at_low = excess(low), at_high = excess(high);
+  for (int turn = 0; turn < 60 && high - low > 1e-13 * high && at_low > 0; ++turn) {
+    double middle = (low * at_high - high * at_low) / (at_high - at_low);
+    if (!(middle > low && middle < high)) middle = 0.5 * (low + high);
+    const double at = excess(middle);
+    // Illinois: an end that stays twice counts half.
+    if (at > 0) {
+      low = middle;
+      at_low = at;
+      at_high *= 0.5;
+    } else {
+      high = middle;
+      at_high = at;
+      at_low *= 0.5;
+    }
   }
-  return contact_.load(d);
+  return contact_.load(low);
 }
 
-double ContactLoad::evaluate(const std::vector<Particle>& particles, const Vec3& partner_displacement, double time,
-                             double time_step) {
+double ContactLoad::evaluate(const Continuum& body, const Vec3& partner_displacement, double time, double time_step) {
   if (!attached_) return force_ = 0;
-  const double indentation = patch_.indentation(particles);
+  const double indentation = patch_.indentation(body);
   const double partner = load_.approach_speed * time - partner_displacement.dot(load_.outward);
   double force = 0;
   if (model_ == LoadModel::contact) {
@@ -73,34 +89,34 @@ double ContactLoad::evaluate(const std::vector<Particle>& particles, const Vec3&
     if (result_.first_time < 0) result_.first_time = time;
     result_.last_time = time + time_step;
     result_.peak_force = std::max(result_.peak_force, force);
-    if (contact_.patch_radius() > 1.1 * patch_.radius()) widen_patch(particles);
+    if (contact_.patch_radius() > 1.1 * patch_.radius()) widen_patch(body);
   }
   return force;
 }
 
-Vec3 ContactLoad::apply(const std::vector<Particle>& particles, double time_step, Grid& grid) {
+Vec3 ContactLoad::apply(double time_step, Continuum& body) {
   if (force_ <= 0 || !attached_) return Vec3::Zero();
   const double impulse = force_ * time_step;
-  patch_.push(particles, impulse, grid);
+  patch_.push(impulse, body);
   result_.impulse += impulse;
   return impulse * load_.outward;
 }
 
-void ContactLoad::widen_patch(const std::vector<Particle>& particles) {
-  patch_ = LoadedPatch(particles, load_.point, load_.outward, contact_.patch_radius(), cell_size_);
-  attached_ = patch_.drop_escaped(particles);
-  const double indentation = attached_ ? patch_.indentation(particles) : 0;
+void ContactLoad::widen_patch(const Continuum& body) {
+  patch_ = LoadedPatch(body, load_.point, load_.outward, contact_.patch_radius());
+  attached_ = patch_.drop_escaped(body);
+  const double indentation = attached_ ? patch_.indentation(body) : 0;
   gap_ += indentation_ - indentation;
   indentation_ = indentation;
 }
 
-void ContactLoad::drop_escaped(const std::vector<Particle>& particles) {
+void ContactLoad::drop_escaped(const Continuum& body) {
   if (!attached_) return;
-  const double before = patch_.indentation(particles);
-  attached_ = patch_.drop_escaped(particles);
+  const double before = patch_.indentation(body);
+  attached_ = patch_.drop_escaped(body);
   if (!attached_) return;
   // The patch that remains stands elsewhere: neither the gap nor the work may notice.
-  const double shift = patch_.indentation(particles) - before;
+  const double shift = patch_.indentation(body) - before;
   gap_ -= shift;
   indentation_ += shift;
 }

@@ -18,17 +18,16 @@ double reduced_mass(double body_mass, double partner_mass);
 
 class ContactLoad {
  public:
-  ContactLoad(const Load& load, double body_mass, const Partner& partner, const Material& body, double cell_size,
-              const SolveSettings& settings, const std::vector<Particle>& particles);
+  ContactLoad(const Load& load, double body_mass, const Partner& partner, const Material& material,
+              const SolveSettings& settings, const Continuum& body);
 
   /// Force of this step [N], from the indentation at `time` given how far the partner has been slowed (displacement of
   /// the partner by its change of velocity, a vector); books the work of the step before.
-  double evaluate(const std::vector<Particle>& particles, const Vec3& partner_displacement, double time,
-                  double time_step);
+  double evaluate(const Continuum& body, const Vec3& partner_displacement, double time, double time_step);
   /// Applies the force to the grid and returns the impulse on the partner [N s].
-  Vec3 apply(const std::vector<Particle>& particles, double time_step, Grid& grid);
+  Vec3 apply(double time_step, Continuum& body);
   /// After particles escaped: forget them.
-  void drop_escaped(const std::vector<Particle>& particles);
+  void drop_escaped(const Continuum& body);
 
   double work() const { return work_; }
   const LoadResult& result() const { return result_; }
@@ -36,12 +35,12 @@ class ContactLoad {
 
  private:
   double contact_force(double approach);
-  void widen_patch(const std::vector<Particle>& particles);
+  void widen_patch(const Continuum& body);
 
   Load load_;
   HertzContact contact_;
   LoadModel model_;
-  double cell_size_, patch_compliance_;
+  double patch_compliance_;
   double prescribed_peak_ = 0, prescribed_duration_ = 0;
   LoadedPatch patch_;
   bool attached_ = true;

@@ -2,8 +2,7 @@
 /// The particles that carry a load, and the force of a load on the grid.
 #include <vector>
 
-#include "mpm/grid.h"
-#include "mpm/particle.h"
+#include "mpm/continuum.h"
 
 namespace sunder::mpm {
 
@@ -12,16 +11,15 @@ class LoadedPatch {
  public:
   /// Particles within `radius` of the axis through `point` along `outward` and not deeper than 0.6 max(radius, h) + 0.5
   /// h, in material coordinates; the nearest particle when there is none.
-  LoadedPatch(const std::vector<Particle>& particles, const Vec3& point, const Vec3& outward, double radius,
-              double cell_size);
+  LoadedPatch(const Continuum& body, const Vec3& point, const Vec3& outward, double radius);
 
   double radius() const { return radius_; }
   /// Weighted displacement along -outward: how far the surface has given way [m].
-  double indentation(const std::vector<Particle>& particles) const;
+  double indentation(const Continuum& body) const;
   /// Lets go of particles that escaped; false when none is left.
-  bool drop_escaped(const std::vector<Particle>& particles);
+  bool drop_escaped(const Continuum& body);
   /// Adds an impulse [N s] along -outward to the grid's momentum.
-  void push(const std::vector<Particle>& particles, double impulse, Grid& grid) const;
+  void push(double impulse, Continuum& body) const;
 
  private:
   Vec3 outward_;

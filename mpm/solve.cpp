@@ -1,28 +1,18 @@
 #include "mpm/solve.h"
 
-#include <atomic>
 #include <cmath>
+#include <optional>
 #include <string>
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
+#include "core/error.h"
 #include "mpm/contact_load.h"
-#include "mpm/front.h"
-#include "mpm/grid.h"
-#include "mpm/neo_hookean.h"
-#include "mpm/quadratic_kernel.h"
+#include "mpm/crack_growth.h"
 #include "mpm/rankine.h"
-#include "mpm/strength_scatter.h"
-#include "mpm/transfer.h"
 
 namespace sunder::mpm {
 namespace {
 
 constexpr double cracked = 0.95;
-/// Beyond these the neo-Hookean law says nothing about a solid any more: the particle is debris.
-constexpr double least_volume_change = -0.5, most_volume_change = 2, most_stretch = 6;
-constexpr std::size_t chunk = 512;
 
 void require(bool holds, const std::string& what) {
   if (!holds) throw Error(ErrorKind::usage, what);
@@ -30,8 +20,8 @@ void require(bool holds, const std::string& what) {
 
 bool positive(double x) { return x > 0 && std::isfinite(x); }
 
-void check(const std::vector<Vec3>& points, double volume, const Material& m, const std::vector<Load>& loads,
-           const std::vector<Partner>& partners, const SolveSettings& settings) {
+void check(const SolveInput& input, const SolveSettings& settings) {
+  const auto& [points, volume, m, loads, partners, held] = input;
   require(!points.empty() && positive(volume), "a solve needs points and a positive volume");
   for (const Vec3& x : points) require(x.allFinite(), "a point is not finite");
   require(
@@ -40,6 +30,8 @@ void check(const std::vector<Vec3>& points, double volume, const Material& m, co
   require(m.poisson_ratio > -1 && m.poisson_ratio < 0.5, "Poisson's ratio must lie in (-1, 0.5)");
   require(settings.cfl > 0 && settings.cfl <= 1, "cfl must lie in (0, 1]: beyond 1 the explicit step is unstable");
   require(!loads.empty(), "a solve needs a load");
+  for (const HeldRegion& region : held)
+    require(!region.region.isEmpty() && region.velocity.allFinite(), "a held region must not be empty");
   for (const Load& load : loads) {
     require(load.point.allFinite() && std::abs(load.outward.norm() - 1) < 1e-6, "outward must be a unit vector");
     require(positive(load.approach_speed), "approach_speed must be positive");
@@ -50,13 +42,6 @@ void check(const std::vector<Vec3>& points, double volume, const Material& m, co
             "a load names a partner that is not there");
     require(partners[static_cast<std::size_t>(load.partner)].mass > 0, "a partner's mass must be positive");
   }
-}
-
-Box box_of(const std::vector<Particle>& particles, bool material) {
-  Box box;
-  for (const Particle& p : particles)
-    if (material || !p.escaped) box.extend(material ? p.material_position : p.position());
-  return box;
 }
 
 /// Kinetic energy of the body and its partners in the frame of their common centre of mass, or in that of the fastest
@@ -91,343 +76,209 @@ struct PartnerMotion {
   Vec3 displacement = Vec3::Zero(), velocity = Vec3::Zero();
 };
 
-class Solver {
- public:
-  Solver(const std::vector<Vec3>& points, double volume, const Material& material, const std::vector<Load>& loads,
-         const std::vector<Partner>& partners, const SolveSettings& settings);
-
-  void step();
-  bool finished() const;
-  double fraction() const { return std::min(1.0, time_ / latest_end_); }
-  SolveResult result() const;
-
- private:
-  void place_particles(const std::vector<Vec3>& points);
-  void set_strengths(const std::vector<Vec3>& points);
-  void sort_particles();
-  void update_stress();
-  void update_particle(Particle& p, std::vector<Candidate>& candidates);
-  void soften(Particle& p, const PrincipalStress& stress) const;
-  void start_cracks();
-  void start_crack(Particle& p, Verdict verdict, const Candidate& candidate);
-  void push();
-  void book_work();
-  void require_finite() const;
-
-  const Material material_;
-  const SolveSettings settings_;
-  const std::vector<Partner> partners_;
-  const NeoHookean elasticity_;
-  double particle_volume_, particle_mass_, body_mass_, cell_size_, wave_speed_, time_step_, transit_, viscosity_;
-  Softening propagation_;
-  std::vector<Particle> particles_;
-  Box followed_;  ///< where the grid follows particles, about the centre of mass
-  Grid grid_;
-  SlabOrder slabs_;
-  bool in_place_ = false;
-  CrackFronts fronts_;
-  std::vector<ContactLoad> loads_;
-  std::vector<PartnerMotion> partner_motion_;
-  std::vector<std::vector<Candidate>> candidates_;  ///< by chunk of particles
-  std::atomic<bool> failure_ = false, lost_ = false;
-  std::atomic<long> resets_ = 0;
-  Vec3 impulse_ = Vec3::Zero(), travel_ = Vec3::Zero();  ///< of the body as a whole
-  double time_ = 0, last_failure_ = 0, contact_duration_ = 0, latest_end_ = 0, work_ = 0, impact_energy_ = 0;
-  long steps_ = 0, nuclei_ = 0;
-};
-
-Box points_box(const std::vector<Vec3>& points) {
+Box box_of(const std::vector<Vec3>& points) {
   Box box;
   for (const Vec3& x : points) box.extend(x);
   return box;
 }
 
-Softening propagation_law(const Material& m, const SolveSettings& settings, double cell_size) {
-  const double band = settings.band_width * cell_size;
-  const double k = settings.damage == DamageModel::front ? settings.front.energy_factor : 1;
-  return make_softening(m.youngs_modulus, m.tensile_strength, k * m.fracture_energy, band, CoarseGrid::lower_strength);
+/// Numbers of a solve that follow from its input.
+struct Scales {
+  double particle_volume, cell_size, wave_speed, time_step, transit;
+
+  Scales(const SolveInput& input, const SolveSettings& settings)
+      : particle_volume(input.volume / static_cast<double>(input.points.size())),
+        cell_size(std::cbrt(particle_volume) / settings.cells_per_spacing),
+        wave_speed(input.material.p_wave_speed()),
+        time_step(settings.cfl * cell_size / wave_speed),
+        transit(box_of(input.points).sizes().maxCoeff() / wave_speed) {
+    // A light partner on the stiff contact swings faster than waves cross a cell.
+    for (const Load& load : input.loads) {
+      const double mass = input.partners[static_cast<std::size_t>(load.partner)].mass;
+      const double stiffness = 2 * load.pair.effective_modulus * settings.smallest_patch * cell_size;
+      time_step = std::min(time_step, 0.5 * std::sqrt(mass / stiffness));
+    }
+  }
+};
+
+ContinuumSettings continuum_settings(const SolveInput& input, const SolveSettings& settings, const Scales& scales) {
+  ContinuumSettings result;
+  result.cell_size = scales.cell_size;
+  result.time_step = scales.time_step;
+  result.viscosity = settings.viscosity * input.material.density * scales.wave_speed * scales.cell_size;
+  result.anchor = box_of(input.points).min();
+  result.spline = settings.spline;
+  return result;
 }
 
-Solver::Solver(const std::vector<Vec3>& points, double volume, const Material& material, const std::vector<Load>& loads,
-               const std::vector<Partner>& partners, const SolveSettings& settings)
-    : material_(material),
+class Solver {
+ public:
+  Solver(const SolveInput& input, const SolveSettings& settings);
+
+  void step();
+  /// Nothing while it goes on.
+  std::optional<StopReason> finished() const;
+  double fraction() const { return std::min(1.0, time_ / latest_end_); }
+  SolveResult result(StopReason stop);
+
+ private:
+  void follow();
+  void push();
+  void book_work();
+
+  const SolveInput& input_;
+  const SolveSettings settings_;
+  const Scales scales_;
+  const double body_mass_;
+  Continuum body_;
+  CrackGrowth cracks_;
+  std::vector<ContactLoad> loads_;
+  std::vector<PartnerMotion> partner_motion_;
+  Box room_;  ///< where particles are followed, about the centre of mass
+  long escapes_ = 0;
+  Vec3 impulse_ = Vec3::Zero(), travel_ = Vec3::Zero();  ///< of the body as a whole
+  double time_ = 0, last_failure_ = 0, contact_duration_ = 0, latest_end_ = 0, work_ = 0, impact_energy_ = 0;
+  long steps_ = 0, failed_ = 0;
+};
+
+Solver::Solver(const SolveInput& input, const SolveSettings& settings)
+    : input_(input),
       settings_(settings),
-      partners_(partners),
-      elasticity_(material),
-      particle_volume_(volume / static_cast<double>(points.size())),
-      particle_mass_(material.density * particle_volume_),
-      body_mass_(material.density * volume),
-      cell_size_(std::cbrt(particle_volume_) / settings.cells_per_spacing),
-      wave_speed_(material.p_wave_speed()),
-      time_step_(settings.cfl * cell_size_ / wave_speed_),
-      transit_(points_box(points).sizes().maxCoeff() / wave_speed_),
-      viscosity_(settings.viscosity * material.density * wave_speed_ * cell_size_),
-      propagation_(propagation_law(material, settings, cell_size_)),
-      grid_(points_box(points), cell_size_, 4, points_box(points).min()),
-      fronts_(points_box(points), cell_size_, wave_speed_, settings.front) {
-  place_particles(points);
-  set_strengths(points);
-  followed_ = points_box(points);
-  const Vec3 room = Vec3::Constant(0.5 * followed_.diagonal().norm() + 4 * cell_size_);
-  followed_ = Box(followed_.min() - room, followed_.max() + room);
-  candidates_.resize((points.size() + chunk - 1) / chunk);
-  partner_motion_.resize(partners.size());
-  impact_energy_ = impact_energy(body_mass_, loads, partners);
-  for (const Load& load : loads) {
-    const Partner& partner = partners[static_cast<std::size_t>(load.partner)];
-    const double m = reduced_mass(body_mass_, partner.mass);
-    loads_.emplace_back(load, body_mass_, partner, material, cell_size_, settings, particles_);
-    contact_duration_ = std::max(contact_duration_, impact_duration(m, load.approach_speed, load.pair));
-    if (std::isfinite(partner.mass)) {
-      const double stiffness = 2 * load.pair.effective_modulus * settings.smallest_patch * cell_size_;
-      time_step_ = std::min(time_step_, 0.5 * std::sqrt(partner.mass / stiffness));
-    }
+      scales_(input, settings),
+      body_mass_(input.material.density * input.volume),
+      body_(input.points, scales_.particle_volume, input.material, continuum_settings(input, settings, scales_)),
+      cracks_(input.material, settings, input.points, body_),
+      partner_motion_(input.partners.size()),
+      impact_energy_(impact_energy(body_mass_, input.loads, input.partners)) {
+  const Box box = box_of(input.points);
+  const Vec3 margin = Vec3::Constant(0.5 * box.diagonal().norm() + 4 * scales_.cell_size);
+  room_ = Box(box.min() - margin, box.max() + margin);
+  body_.hold(input.held);
+  for (const Load& load : input.loads) {
+    const Partner& partner = input.partners[static_cast<std::size_t>(load.partner)];
+    loads_.emplace_back(load, body_mass_, partner, input.material, settings, body_);
+    contact_duration_ = std::max(
+        contact_duration_, impact_duration(reduced_mass(body_mass_, partner.mass), load.approach_speed, load.pair));
   }
-  latest_end_ = contact_duration_ + settings.most_transits * transit_;
+  latest_end_ = contact_duration_ + settings.most_transits * scales_.transit;
 }
 
-/// Stored cell by cell, so that neighbours in space are neighbours in memory.
-void Solver::place_particles(const std::vector<Vec3>& points) {
-  particles_.resize(points.size());
-  for (std::size_t p = 0; p < points.size(); ++p) {
-    particles_[p].id = static_cast<int>(p);
-    particles_[p].material_position = points[p];
-  }
-  const SlabOrder slabs = slab_order(particles_, grid_);
-  std::vector<Particle> sorted;
-  sorted.reserve(points.size());
-  for (int p : slabs.order) sorted.push_back(particles_[static_cast<std::size_t>(p)]);
-  particles_ = std::move(sorted);
-}
-
-void Solver::set_strengths(const std::vector<Vec3>& points) {
-  const auto factor =
-      strength_scatter(points, material_.weibull_modulus, settings_.scatter_length * cell_size_, settings_.seed);
-  for (Particle& p : particles_) {
-    const double f = factor[static_cast<std::size_t>(p.id)];
-    p.nucleation_strength = f * material_.tensile_strength;
-    p.softening_slope = propagation_.slope;
-    if (settings_.damage == DamageModel::local) {
-      p.role = CrackRole::front;
-      // Scatter beyond what the softening law can carry at this energy would make its slope negative.
-      p.strength = std::min(f * propagation_.strength,
-                            propagation_.strength * std::sqrt((1 + propagation_.slope) / propagation_.slope / 1.02));
-      const double ratio =
-          propagation_.slope / (1 + propagation_.slope) * std::pow(p.strength / propagation_.strength, 2);
-      p.softening_slope = ratio / (1 - ratio);
-      p.threshold = p.strength;
-    } else {
-      p.threshold = std::min(p.nucleation_strength, propagation_.strength);
-    }
-  }
-}
-
-/// Particles that flew beyond the followed box go on without the grid.
-void Solver::sort_particles() {
-  bool escape = false;
-  for (Particle& p : particles_)
-    if (!p.escaped && !followed_.contains(p.position() - travel_)) {
-      p.escaped = escape = true;
-      p.damage = 1;
-      if (p.damage_time < 0) p.damage_time = time_;
-    }
-  if (escape) {
-    require_finite();  // what is not a number is nowhere either
-    for (ContactLoad& load : loads_) load.drop_escaped(particles_);
-  }
-  if (const Box box = box_of(particles_, false); !box.isEmpty()) grid_ = Grid(box, cell_size_, 4, grid_.origin());
-  slabs_ = slab_order(particles_, grid_);
-}
-
-void Solver::soften(Particle& p, const PrincipalStress& stress) const {
-  const double largest = stress.value[2];
-  if (p.role == CrackRole::virgin || largest <= p.threshold) return;
-  const double before = p.threshold;
-  p.threshold = largest;
-  const double damage = Softening{p.strength, p.softening_slope, 0}.damage(largest);
-  if (damage <= p.damage) return;
-  // Dissipation density is the integral of the driving energy r^2 / 2E over dc.
-  p.dissipated += (damage - p.damage) * 0.25 * (before * before + largest * largest) / material_.youngs_modulus;
-  p.damage = damage;
-}
-
-void Solver::update_particle(Particle& p, std::vector<Candidate>& candidates) {
-  Mat3& h = p.displacement_gradient;
-  double dj = volume_change(h);
-  if (!std::isfinite(dj)) {
-    lost_.store(true, std::memory_order_relaxed);
-    return;
-  }
-  const double stretch = 2 * h.trace() + h.squaredNorm();
-  if (dj < least_volume_change || dj > most_volume_change || stretch > most_stretch) {
-    h.setZero();
-    dj = 0;
-    p.damage = 1;
-    p.role = p.role == CrackRole::virgin ? CrackRole::filler : p.role;
-    resets_.fetch_add(1, std::memory_order_relaxed);
-  }
-  Mat3 stress = elasticity_.cauchy_stress(h, dj);
-  if (p.damage > 0 || principal_stress_bound(stress) > p.threshold) {
-    const PrincipalStress principal = principal_stress(stress);
-    if (p.role == CrackRole::virgin && principal.value[2] > p.threshold)
-      candidates.push_back({p.id, p.material_position, principal.direction.col(2), principal.value[2],
-                            principal.value[2] / p.nucleation_strength});
-    soften(p, principal);
-    if (p.damage > 0) stress = damaged_stress(principal, p.damage);
-  }
-  if (p.damage >= 0.99 && p.damage_time < 0) {
-    p.damage_time = time_;
-    failure_.store(true, std::memory_order_relaxed);
-  }
-  stress += 0.5 * viscosity_ * (1 - p.damage) * (p.affine_velocity + p.affine_velocity.transpose());
-  const double factor = time_step_ * particle_volume_ / (quadratic_moment * cell_size_ * cell_size_) * (1 + dj);
-  p.affine_momentum = particle_mass_ * p.affine_velocity - factor * stress;
-}
-
-void Solver::update_stress() {
-  failure_ = false;
-  tbb::parallel_for(std::size_t{0}, candidates_.size(), [&](std::size_t c) {
-    candidates_[c].clear();
-    for (std::size_t n = c * chunk; n < std::min((c + 1) * chunk, particles_.size()); ++n) {
-      if (particles_[n].escaped) continue;
-      const std::size_t before = candidates_[c].size();
-      update_particle(particles_[n], candidates_[c]);
-      if (candidates_[c].size() > before) candidates_[c].back().particle = static_cast<int>(n);
-    }
-  });
-  if (lost_) require_finite();
-  if (failure_) last_failure_ = time_;
-}
-
-void Solver::start_crack(Particle& p, Verdict verdict, const Candidate& candidate) {
-  p.role = verdict == Verdict::filler ? CrackRole::filler : CrackRole::front;
-  p.strength = p.threshold = propagation_.strength;
-  p.softening_slope = propagation_.slope;
-  if (verdict == Verdict::nucleate) ++nuclei_;
-  if (p.role == CrackRole::front) fronts_.add(candidate.position, candidate.normal, time_);
-}
-
-/// Strongest first, ties by index. What the fronts of earlier steps say is asked in parallel; only fronts of this step
-/// are asked in order.
-void Solver::start_cracks() {
-  std::vector<Candidate> all;
-  for (const auto& part : candidates_) all.insert(all.end(), part.begin(), part.end());
-  if (all.empty()) return;
-  std::sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) {
-    return a.urgency > b.urgency || (a.urgency == b.urgency && a.particle < b.particle);
-  });
-  std::vector<CrackFronts::Sight> sights(all.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, all.size(), 16), [&](const auto& range) {
-    for (std::size_t n = range.begin(); n < range.end(); ++n)
-      sights[n] = fronts_.look(all[n].position, all[n].normal, time_);
-  });
-  const int known = fronts_.count();
-  for (std::size_t n = 0; n < all.size(); ++n) {
-    const Candidate& c = all[n];
-    const auto sight =
-        fronts_.count() > known ? sights[n] | fronts_.look(c.position, c.normal, time_, known) : sights[n];
-    const Verdict verdict = sight.verdict();
-    Particle& p = particles_[static_cast<std::size_t>(c.particle)];
-    const double strength = verdict == Verdict::nucleate ? p.nucleation_strength : propagation_.strength;
-    if (verdict != Verdict::wait && c.stress > strength) start_crack(p, verdict, c);
-  }
+/// Keeps the followed box with the centre of mass; loads let go of what left it.
+void Solver::follow() {
+  body_.follow(Box(room_.min() + travel_, room_.max() + travel_));
+  if (body_.escapes() == escapes_) return;
+  escapes_ = body_.escapes();
+  for (ContactLoad& load : loads_) load.drop_escaped(body_);
 }
 
 void Solver::push() {
   for (ContactLoad& load : loads_) {
     const std::size_t partner = static_cast<std::size_t>(load.load().partner);
     PartnerMotion& motion = partner_motion_[partner];
-    const Vec3 impulse = load.apply(particles_, time_step_, grid_);
+    const Vec3 impulse = load.apply(scales_.time_step, body_);
     impulse_ -= impulse;
-    if (std::isfinite(partners_[partner].mass)) motion.velocity += impulse / partners_[partner].mass;
+    if (std::isfinite(input_.partners[partner].mass)) motion.velocity += impulse / input_.partners[partner].mass;
   }
-  for (PartnerMotion& motion : partner_motion_) motion.displacement += time_step_ * motion.velocity;
-  travel_ += time_step_ / body_mass_ * impulse_;
+  for (PartnerMotion& motion : partner_motion_) motion.displacement += scales_.time_step * motion.velocity;
+  if (input_.held.empty()) travel_ += scales_.time_step / body_mass_ * impulse_;
 }
 
-/// Work of the loads less the energy of the body's translation.
+/// Work of the loads less the energy of the body's translation, which a held body does not have.
 void Solver::book_work() {
-  double work = -0.5 * impulse_.squaredNorm() / body_mass_;
+  double work = input_.held.empty() ? -0.5 * impulse_.squaredNorm() / body_mass_ : 0;
   for (const ContactLoad& load : loads_) work += load.work();
   work_ = std::max(work_, work);
 }
 
 void Solver::step() {
-  if (!in_place_) sort_particles();
-  grid_.clear();
-  update_stress();
-  if (settings_.damage == DamageModel::front) start_cracks();
+  body_.advance(time_);
+  follow();
+  if (body_.failed()) last_failure_ = time_;
+  cracks_.grow(time_, body_);
   for (ContactLoad& load : loads_)
-    load.evaluate(particles_, partner_motion_[static_cast<std::size_t>(load.load().partner)].displacement, time_,
-                  time_step_);
+    load.evaluate(body_, partner_motion_[static_cast<std::size_t>(load.load().partner)].displacement, time_,
+                  scales_.time_step);
   book_work();
-  particle_to_grid(particles_, slabs_, particle_mass_, grid_);
   push();
-  grid_.momentum_to_velocity();
-  in_place_ = grid_to_particle(grid_, slabs_, time_step_, particles_);
-  for (Particle& p : particles_)
-    if (p.escaped) p.displacement += time_step_ * p.velocity;
-  time_ += time_step_;
+  body_.update_grid();
+  time_ += scales_.time_step;
   ++steps_;
 }
 
-bool Solver::finished() const {
-  if (time_ < contact_duration_) return false;
-  return time_ - last_failure_ >= settings_.quiet_transits * transit_ || time_ >= latest_end_;
+std::optional<StopReason> Solver::finished() const {
+  if (steps_ >= settings_.most_steps) return StopReason::steps;
+  if (static_cast<double>(body_.failures()) >= settings_.most_damaged_share * body_.size()) return StopReason::damage;
+  if (time_ < contact_duration_) return {};
+  if (time_ - last_failure_ >= settings_.quiet_transits * scales_.transit) return StopReason::quiet;
+  if (time_ >= latest_end_) return StopReason::time_limit;
+  return {};
 }
 
-void Solver::require_finite() const {
-  for (const Particle& p : particles_)
-    if (!p.displacement_gradient.allFinite() || !p.velocity.allFinite())
-      throw Error(ErrorKind::unstable, "the solve lost particle " + std::to_string(p.id) + " in step " +
-                                           std::to_string(steps_) +
-                                           ": its state is not finite; lower the time step (cfl)");
-}
-
-SolveResult Solver::result() const {
-  require_finite();
+SolveResult Solver::result(StopReason stop) {
+  const std::vector<Motion> motion = body_.finish();
   SolveResult r;
-  r.particles.resize(particles_.size());
-  const double moment = particle_mass_ * quadratic_moment * cell_size_ * cell_size_;
-  std::vector<double> dissipated(particles_.size());
-  for (const Particle& p : particles_) {
-    const Mat3& c = p.affine_velocity;
+  r.stop = stop;
+  const StoredEnergy stored = body_.energy(motion);
+  r.energy = {0, stored.kinetic, stored.tension, stored.compression, 0, body_.viscous_work()};
+  const double moment = body_.particle_mass() * spline_moment(settings_.spline) * scales_.cell_size * scales_.cell_size;
+  for (int id = 0; id < body_.size(); ++id) {
+    const Motion& m = motion[static_cast<std::size_t>(id)];
+    const PointState p = body_.point(id);
+    const Mat3& c = m.affine_velocity;
     const Vec3 spin(c(2, 1) - c(1, 2), c(0, 2) - c(2, 0), c(1, 0) - c(0, 1));
-    r.particles[static_cast<std::size_t>(p.id)] = {p.displacement, p.velocity, moment * spin, p.damage, p.damage_time};
-    dissipated[static_cast<std::size_t>(p.id)] = p.dissipated * particle_volume_;
+    r.particles.push_back({p.displacement, m.velocity, moment * spin, p.damage, p.damage_time});
+    r.energy.fracture += p.dissipated * scales_.particle_volume;
     r.damaged_share += p.damage >= cracked;
   }
-  r.damaged_share /= static_cast<double>(particles_.size());
-  for (double d : dissipated) r.dissipated += d;
-  for (const ContactLoad& load : loads_) r.loads.push_back(load.result());
-  r.cell_size = cell_size_;
-  r.time_step = time_step_;
+  r.damaged_share /= static_cast<double>(body_.size());
+  for (const ContactLoad& load : loads_) {
+    r.loads.push_back(load.result());
+    r.energy.work += load.work();
+  }
+  for (std::size_t n = 0; n < input_.held.size(); ++n)
+    r.energy.work += body_.held_impulses()[n].dot(input_.held[n].velocity);
+  r.cell_size = scales_.cell_size;
+  r.time_step = scales_.time_step;
   r.duration = time_;
   r.steps = steps_;
-  r.particle_mass = particle_mass_;
+  r.particle_mass = body_.particle_mass();
   r.work = work_;
   r.impact_energy = impact_energy_;
-  r.nuclei = nuclei_;
-  r.crushed_resets = resets_;
-  r.band_width = settings_.band_width * cell_size_;
-  r.admissible_length =
-      admissible_length(material_.youngs_modulus, material_.tensile_strength, material_.fracture_energy);
-  r.propagation_strength = propagation_.strength;
+  r.nuclei = cracks_.nuclei();
+  r.crushed_resets = body_.resets();
+  r.memory = body_.memory();
+  r.band_width = settings_.band_width * scales_.cell_size;
+  const Material& m = input_.material;
+  r.admissible_length = admissible_length(m.youngs_modulus, m.tensile_strength, m.fracture_energy);
+  r.propagation_strength = cracks_.law().strength;
   return r;
 }
 
 }  // namespace
 
-SolveResult solve(const std::vector<Vec3>& points, double volume, const Material& material,
-                  const std::vector<Load>& loads, const std::vector<Partner>& partners, const SolveSettings& settings,
-                  Progress& progress) {
-  check(points, volume, material, loads, partners, settings);
-  Solver solver(points, volume, material, loads, partners, settings);
-  for (long n = 0; !solver.finished(); ++n) {
+const char* name_of(StopReason reason) {
+  switch (reason) {
+    case StopReason::quiet:
+      return "quiet";
+    case StopReason::time_limit:
+      return "time limit";
+    case StopReason::damage:
+      return "damaged share";
+    case StopReason::steps:
+      return "step limit";
+  }
+  return "";
+}
+
+SolveResult solve(const SolveInput& input, const SolveSettings& settings, Progress& progress) {
+  check(input, settings);
+  Solver solver(input, settings);
+  std::optional<StopReason> stop;
+  for (long n = 0; !(stop = solver.finished()); ++n) {
     if (n % 16 == 0) progress.checkpoint("solve", solver.fraction());
     solver.step();
   }
-  return solver.result();
+  return solver.result(*stop);
 }
 
 }  // namespace sunder::mpm

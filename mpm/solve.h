@@ -6,6 +6,7 @@
 
 #include "core/progress.h"
 #include "core/types.h"
+#include "mpm/continuum.h"
 #include "mpm/hertz_contact.h"
 #include "mpm/material.h"
 
@@ -59,6 +60,9 @@ struct SolveSettings {
   double scatter_length = 3;       ///< correlation length of the strength in h
   double quiet_transits = 2;       ///< stop when no particle failed for this long after the contact, in L / c_p
   double most_transits = 8;        ///< stop this long after the contact at the latest
+  double most_damaged_share = 1;   ///< stop when this share of the particles is damaged
+  long most_steps = 10000000;      ///< stop after so many steps whatever happens
+  Spline spline = Spline::quadratic;
   std::uint64_t seed = 1;
 };
 
@@ -77,31 +81,59 @@ struct ParticleState {
   double damage_time = -1;  ///< when damage reached 1 [s]; -1: never
 };
 
+/// What ended a solve.
+enum class StopReason {
+  quiet,       ///< contacts over and nothing failed for a while
+  time_limit,  ///< contacts over, but things still fail: the longest time allowed
+  damage,      ///< the damaged share asked for
+  steps,       ///< the number of steps allowed
+};
+const char* name_of(StopReason reason);
+
+/// Where the work went [J]. What is missing in the sum is the dissipation of the transfers and of the time steps.
+struct EnergyLedger {
+  double work = 0;                      ///< of loads and held regions on the body
+  double kinetic = 0;                   ///< at the end
+  double tension = 0, compression = 0;  ///< elastic at the end, by the sign of the principal stresses
+  double fracture = 0;                  ///< dissipated by damage
+  double viscous = 0;                   ///< dissipated by viscosity
+  double balance() const { return work - (kinetic + tension + compression + fracture + viscous); }
+};
+
 struct SolveResult {
   std::vector<ParticleState> particles;  ///< in the order of the points given
   std::vector<LoadResult> loads;
+  StopReason stop = StopReason::quiet;
   double cell_size = 0;                ///< h [m]
   double time_step = 0, duration = 0;  ///< [s]
   long steps = 0;
   double particle_mass = 0;  ///< [kg]
   double work = 0;           ///< of the loads on the body less its rigid translation, largest value reached [J]
   double impact_energy = 0;  ///< kinetic, of body and partners in their common frame: 1/2 m_s v^2 for one partner [J]
-  double dissipated = 0;     ///< by damage [J]
+  EnergyLedger energy;
   double damaged_share = 0;  ///< particles with damage >= 0.95 / particles
   long nuclei = 0;           ///< cracks that started in virgin material (front rules)
   long crushed_resets = 0;   ///< particles whose deformation left the range of the material law and was reset, counted
+  std::size_t memory = 0;    ///< of particles and grid [bytes]
 
   // What the resolution does to the material (band l_ch against l_max = 2 E G_f / sigma_f^2).
   double band_width = 0, admissible_length = 0;  ///< [m]
   double propagation_strength = 0;               ///< strength used at crack fronts (front) or everywhere (local) [Pa]
 };
 
-/// Explicit MLS-MPM (Hu et al. 2018) with quadratic B-splines and APIC, neo-Hookean elasticity in H = F - I, Rankine
-/// damage. `points`: material positions, each of volume `volume` / points.size() [m^3]. The result does not depend on
-/// the number of threads. Errors: ErrorKind::unstable when a value stops being finite (names step and particle),
-/// ErrorKind::interrupted from `progress`, ErrorKind::usage for an impossible material or load.
-SolveResult solve(const std::vector<Vec3>& points, double volume, const Material& material,
-                  const std::vector<Load>& loads, const std::vector<Partner>& partners, const SolveSettings& settings,
-                  Progress& progress);
+/// One body and what acts on it.
+struct SolveInput {
+  std::vector<Vec3> points;  ///< material positions [m]
+  double volume = 0;         ///< of the body, shared equally by the points [m^3]
+  Material material;
+  std::vector<Load> loads;
+  std::vector<Partner> partners;
+  std::vector<HeldRegion> held;  ///< fixed parts of the body
+};
+
+/// The result does not depend on the number of threads. Errors: ErrorKind::unstable when a value stops being finite
+/// (names the particle and its state), ErrorKind::interrupted from `progress`, ErrorKind::usage for an impossible
+/// material or load, or a time step beyond the limit of stability.
+SolveResult solve(const SolveInput& input, const SolveSettings& settings, Progress& progress);
 
 }  // namespace sunder::mpm

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "core/random.h"
-#include "mpm/quadratic_kernel.h"
+#include "mpm/spline.h"
 
 namespace sunder::mpm {
 namespace {
@@ -22,14 +22,17 @@ double normal_deviate(std::uint64_t seed, std::uint64_t key) {
   return std::sqrt(-2 * std::log(u)) * std::cos(2 * std::numbers::pi * v);
 }
 
+/// Quadratic B-splines blend the 27 lattice points around x.
 double gaussian_field(const Vec3& x, std::uint64_t seed) {
-  const QuadraticStencil s = quadratic_stencil(x);
+  const Vec3 low = (x.array() - stencil_shift(Spline::quadratic)).floor();
+  double weight[3][4];
+  for (int a = 0; a < 3; ++a) spline_weights(Spline::quadratic, x[a] - low[a] - 1, weight[a]);
   double sum = 0, squares = 0;
-  for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = 0; j < 3; ++j)
-      for (std::size_t k = 0; k < 3; ++k) {
-        const double w = s.weight[0][i] * s.weight[1][j] * s.weight[2][k];
-        const auto at = [&](std::size_t axis, std::size_t n) { return s.base[axis] + static_cast<int>(n); };
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      for (int k = 0; k < 3; ++k) {
+        const double w = weight[0][i] * weight[1][j] * weight[2][k];
+        const auto at = [&](int axis, int n) { return static_cast<int>(low[axis]) + n; };
         sum += w * normal_deviate(seed, lattice_key(at(0, i), at(1, j), at(2, k)));
         squares += w * w;
       }

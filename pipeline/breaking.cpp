@@ -84,7 +84,7 @@ FractureRecord record_of(const FractureInput& input, const FractureOutcome& outc
   record.lump_share = outcome.lump_share;
   record.volume_error = outcome.volume_error;
   record.work_over_impact_energy = outcome.solve.work / outcome.solve.impact_energy;
-  record.dissipated = outcome.solve.dissipated;
+  record.dissipated = outcome.solve.energy.fracture;
   record.band_width = outcome.solve.band_width;
   record.admissible_length = outcome.solve.admissible_length;
   record.tensile_strength = input.material.tensile_strength;

@@ -119,7 +119,7 @@ FractureOutcome fracture(const FractureInput& input, Progress& progress) {
   {
     const Stopwatch watch(outcome.seconds.solve);
     outcome.solve =
-        mpm::solve(samples.points, volume, solid(input.material), loads, input.partners, input.solve, progress);
+        mpm::solve({samples.points, volume, solid(input.material), loads, input.partners, {}}, input.solve, progress);
   }
   outcome.particles = static_cast<long>(samples.points.size());
   if (outcome.solve.crushed_resets > 0)

@@ -7,34 +7,46 @@
 
 #include <Eigen/Dense>
 
-#include "mpm/material.h"
-#include "mpm/particle.h"
+#include "mpm/continuum.h"
 
 namespace sunder::mpm::fixture {
 
-/// Fan (2024) eq. 2.10.
-inline double kernel(double distance) {
+struct ReferencePoint {
+  PointState state;
+  Motion motion;
+  Vec3 position() const { return state.material_position + state.displacement; }
+};
+
+/// B-splines of second and third degree; quadratic: Fan (2024) eq. 2.10.
+inline double kernel(Spline spline, double distance) {
   const double d = std::abs(distance);
-  if (d < 0.5) return 0.75 - d * d;
-  return d < 1.5 ? 0.5 * (1.5 - d) * (1.5 - d) : 0;
+  if (spline == Spline::quadratic) {
+    if (d < 0.5) return 0.75 - d * d;
+    return d < 1.5 ? 0.5 * (1.5 - d) * (1.5 - d) : 0;
+  }
+  if (d < 1) return 0.5 * d * d * d - d * d + 2.0 / 3;
+  return d < 2 ? (2 - d) * (2 - d) * (2 - d) / 6 : 0;
 }
 
 class ReferenceStep {
  public:
   /// `origin` is node (0, 0, 0); the particles must stay at least two cells inside `size` nodes.
-  ReferenceStep(const Material& material, double particle_volume, double cell_size, double time_step,
-                double viscosity_factor, const Vec3& origin, const std::array<int, 3>& size)
+  ReferenceStep(const Material& material, double particle_volume, double cell_size, double time_step, double viscosity,
+                const Vec3& origin, const std::array<int, 3>& size, Spline spline = Spline::quadratic)
       : material_(material),
         volume_(particle_volume),
         mass_(material.density * particle_volume),
         h_(cell_size),
         dt_(time_step),
-        viscosity_(viscosity_factor * material.density * material.p_wave_speed() * cell_size),
+        viscosity_(viscosity),
+        reach_(spline == Spline::quadratic ? 1.5 : 2),
+        moment_(spline == Spline::quadratic ? h_ * h_ / 4 : h_ * h_ / 3),
+        spline_(spline),
         origin_(origin),
         size_(size) {}
 
   /// `kicks`: impulse on each particle [N s], spread to the grid like its momentum; may be empty.
-  void operator()(std::vector<Particle>& particles, const std::vector<Vec3>& kicks = {}) {
+  void operator()(std::vector<ReferencePoint>& particles, const std::vector<Vec3>& kicks = {}) {
     const std::size_t count = static_cast<std::size_t>(size_[0] * size_[1] * size_[2]);
     mass_at_.assign(count, 0);
     momentum_at_.assign(count, Vec3::Zero());
@@ -42,11 +54,13 @@ class ReferenceStep {
       scatter(particles[p], kicks.empty() ? Vec3(Vec3::Zero()) : kicks[p]);
     for (std::size_t n = 0; n < count; ++n)
       if (mass_at_[n] > 1e-290) momentum_at_[n] /= mass_at_[n];
-    for (Particle& p : particles) gather(p);
+    for (ReferencePoint& p : particles) gather(p);
   }
 
   /// Cauchy stress after damage and viscosity; grows the damage of the particle.
-  Mat3 stress(Particle& p) const {
+  Mat3 stress(ReferencePoint& point) const {
+    PointState& p = point.state;
+    const Mat3& c = point.motion.affine_velocity;
     const Mat3 f = Mat3::Identity() + p.displacement_gradient;
     const double j = f.determinant();
     const Mat3 b = f * f.transpose();
@@ -55,9 +69,12 @@ class ReferenceStep {
                            j;
     const Eigen::SelfAdjointEigenSolver<Mat3> eigen(effective);
     const double largest = eigen.eigenvalues()[2];
-    if (p.role != CrackRole::virgin && largest > p.threshold) {
-      p.threshold = largest;
+    if (std::isfinite(p.strength) && largest > p.threshold) {
+      const double before = p.damage;
       p.damage = std::max(p.damage, std::min(1.0, (1 + p.softening_slope) * (1 - p.strength / largest)));
+      p.dissipated +=
+          (p.damage - before) * 0.25 * (p.threshold * p.threshold + largest * largest) / material_.youngs_modulus;
+      p.threshold = largest;
     }
     Mat3 damaged = Mat3::Zero();
     for (int k = 0; k < 3; ++k) {
@@ -65,7 +82,7 @@ class ReferenceStep {
       const Vec3 n = eigen.eigenvectors().col(k);
       damaged += (value > 0 ? (1 - p.damage) * value : value) * n * n.transpose();
     }
-    return damaged + 0.5 * viscosity_ * (1 - p.damage) * (p.affine_velocity + p.affine_velocity.transpose());
+    return damaged + 0.5 * viscosity_ * (1 - p.damage) * (c + c.transpose());
   }
 
  private:
@@ -75,42 +92,43 @@ class ReferenceStep {
   template <class Visit>
   void for_each_node(const Vec3& x, const Visit& visit) const {
     const Vec3 cells = (x - origin_) / h_;
-    const Eigen::Vector3i low = (cells.array() - 1.5).ceil().cast<int>();
-    for (int i = low[0]; i < low[0] + 3; ++i)
-      for (int j = low[1]; j < low[1] + 3; ++j)
-        for (int k = low[2]; k < low[2] + 3; ++k) {
+    const Eigen::Vector3i low = (cells.array() - reach_).ceil().cast<int>();
+    const int width = static_cast<int>(2 * reach_);
+    for (int i = low[0]; i < low[0] + width; ++i)
+      for (int j = low[1]; j < low[1] + width; ++j)
+        for (int k = low[2]; k < low[2] + width; ++k) {
           const Vec3 d = Vec3(i, j, k) - cells;
-          visit(index(i, j, k), kernel(d[0]) * kernel(d[1]) * kernel(d[2]), Vec3(h_ * d));
+          visit(index(i, j, k), kernel(spline_, d[0]) * kernel(spline_, d[1]) * kernel(spline_, d[2]), Vec3(h_ * d));
         }
   }
 
-  /// Fan (2024) eq. 3.4-3.5: m (v + C d) - dt V0 J sigma (4/h^2) d.
-  void scatter(Particle& p, const Vec3& kick) {
-    const Mat3 f = Mat3::Identity() + p.displacement_gradient;
+  /// Fan (2024) eq. 3.4-3.5: m (v + C d) - dt V0 J sigma d / moment.
+  void scatter(ReferencePoint& p, const Vec3& kick) {
+    const Mat3 f = Mat3::Identity() + p.state.displacement_gradient;
     const Mat3 kirchhoff = f.determinant() * stress(p);
     for_each_node(p.position(), [&](std::size_t node, double w, const Vec3& d) {
       mass_at_[node] += w * mass_;
-      momentum_at_[node] += w * mass_ * (p.velocity + p.affine_velocity * d);
-      momentum_at_[node] += -dt_ * volume_ * w * kirchhoff * (4 / (h_ * h_)) * d + w * kick;
+      momentum_at_[node] += w * mass_ * (p.motion.velocity + p.motion.affine_velocity * d);
+      momentum_at_[node] += -dt_ * volume_ * w * kirchhoff * d / moment_ + w * kick;
     });
   }
 
-  void gather(Particle& p) const {
+  void gather(ReferencePoint& p) const {
     Vec3 v = Vec3::Zero();
     Mat3 c = Mat3::Zero();
     for_each_node(p.position(), [&](std::size_t node, double w, const Vec3& d) {
       v += w * momentum_at_[node];
-      c += w * (4 / (h_ * h_)) * momentum_at_[node] * d.transpose();
+      c += w / moment_ * momentum_at_[node] * d.transpose();
     });
-    p.velocity = v;
-    p.affine_velocity = c;
-    const Mat3 f = (Mat3::Identity() + dt_ * c) * (Mat3::Identity() + p.displacement_gradient);
-    p.displacement_gradient = f - Mat3::Identity();
-    p.displacement += dt_ * v;
+    p.motion = {v, c};
+    const Mat3 f = (Mat3::Identity() + dt_ * c) * (Mat3::Identity() + p.state.displacement_gradient);
+    p.state.displacement_gradient = f - Mat3::Identity();
+    p.state.displacement += dt_ * v;
   }
 
   Material material_;
-  double volume_, mass_, h_, dt_, viscosity_;
+  double volume_, mass_, h_, dt_, viscosity_, reach_, moment_;
+  Spline spline_;
   Vec3 origin_;
   std::array<int, 3> size_;
   std::vector<double> mass_at_;

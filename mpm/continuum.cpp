@@ -1,0 +1,615 @@
+#include "mpm/continuum.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "core/error.h"
+#include "mpm/rankine.h"
+
+namespace sunder::mpm {
+namespace {
+
+/// Strays go one by one: when there are more than this share of all points, sorting is cheaper.
+constexpr int points_per_stray = 512;
+/// Points sorted again before they are so far from their block that its neighbours no longer reach them [cells].
+constexpr int furthest_stray = 2;
+
+int floor_div(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
+
+std::array<int, 3> plus(const std::array<int, 3>& a, int x, int y, int z) { return {a[0] + x, a[1] + y, a[2] + z}; }
+
+Vec3 head(const Node& node) { return Vec3(node.value[0], node.value[1], node.value[2]); }
+
+struct Lane {
+  std::size_t chunk;
+  int lane;
+};
+
+Lane lane_of(int slot) { return {static_cast<std::size_t>(slot / chunk_size), slot % chunk_size}; }
+
+void read(const double (*from)[chunk_size], int lane, Vec3& to) {
+  for (int a = 0; a < 3; ++a) to[a] = from[a][lane];
+}
+
+void read(const double (*from)[chunk_size], int lane, Mat3& to) {
+  for (int k = 0; k < 9; ++k) to(k / 3, k % 3) = from[k][lane];
+}
+
+void write(const Vec3& from, int lane, double (*to)[chunk_size]) {
+  for (int a = 0; a < 3; ++a) to[a][lane] = from[a];
+}
+
+void write(const Mat3& from, int lane, double (*to)[chunk_size]) {
+  for (int k = 0; k < 9; ++k) to[k][lane] = from(k / 3, k % 3);
+}
+
+PointState read(const PointChunk& c, int lane) {
+  PointState p;
+  read(c.material_position, lane, p.material_position);
+  read(c.displacement, lane, p.displacement);
+  read(c.displacement_gradient, lane, p.displacement_gradient);
+  p.threshold = c.threshold[lane];
+  p.strength = c.strength[lane];
+  p.softening_slope = c.softening_slope[lane];
+  p.damage = c.damage[lane];
+  p.damage_time = c.damage_time[lane];
+  p.dissipated = c.dissipated[lane];
+  return p;
+}
+
+void write(const PointState& p, int id, int lane, PointChunk& c) {
+  write(p.material_position, lane, c.material_position);
+  write(p.displacement, lane, c.displacement);
+  write(p.displacement_gradient, lane, c.displacement_gradient);
+  c.threshold[lane] = p.threshold;
+  c.strength[lane] = p.strength;
+  c.softening_slope[lane] = p.softening_slope;
+  c.damage[lane] = p.damage;
+  c.damage_time[lane] = p.damage_time;
+  c.dissipated[lane] = p.dissipated;
+  c.id[lane] = id;
+}
+
+PointChunk empty_chunk() {
+  PointChunk chunk;
+  for (int lane = 0; lane < chunk_size; ++lane) write(PointState{}, -1, lane, chunk);
+  return chunk;
+}
+
+std::size_t chunks_for(int count) { return static_cast<std::size_t>((count + chunk_size - 1) / chunk_size); }
+
+}  // namespace
+
+Continuum::Continuum(const std::vector<Vec3>& points, double particle_volume, const Material& material,
+                     const ContinuumSettings& settings)
+    : settings_(settings),
+      elasticity_(material),
+      kernels_(step_kernels(settings.spline, settings.instructions)),
+      chunks_(chunks_for(static_cast<int>(points.size())), empty_chunk()),
+      slot_(points.size()) {
+  constants_.time_step = settings.time_step;
+  constants_.cell_size = settings.cell_size;
+  // One cell below the anchor, so that a thin body whose lowest point is there fits into one layer of blocks.
+  for (int a = 0; a < 3; ++a) constants_.origin[a] = settings.anchor[a] - settings.cell_size;
+  constants_.particle_volume = particle_volume;
+  constants_.particle_mass = material.density * particle_volume;
+  constants_.shear_modulus = material.shear_modulus();
+  constants_.lame_lambda = material.lame_lambda();
+  constants_.youngs_modulus = material.youngs_modulus;
+  constants_.viscosity = settings.viscosity;
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    slot_[p] = static_cast<int>(p);
+    PointState state;
+    state.material_position = points[p];
+    write(state, slot_[p], static_cast<int>(p % chunk_size), chunks_[p / chunk_size]);
+  }
+}
+
+PointState Continuum::point(int id) const {
+  const int slot = slot_[static_cast<std::size_t>(id)];
+  if (slot >= 0) return read(chunks_[lane_of(slot).chunk], lane_of(slot).lane);
+  const Escaped& e = escaped_[static_cast<std::size_t>(-1 - slot)];
+  PointState state = e.state;
+  state.displacement += (constants_.time - e.since) * e.velocity;
+  return state;
+}
+
+void Continuum::set_point(int id, const PointState& state) {
+  const Lane at = lane_of(slot_[static_cast<std::size_t>(id)]);
+  write(state, id, at.lane, chunks_[at.chunk]);
+  sorted_ = false;
+}
+
+Vec3 Continuum::displacement(int id) const {
+  const int slot = slot_[static_cast<std::size_t>(id)];
+  if (slot < 0) return point(id).displacement;
+  Vec3 u;
+  read(chunks_[lane_of(slot).chunk].displacement, lane_of(slot).lane, u);
+  return u;
+}
+
+Vec3 Continuum::material_position(int id) const {
+  const int slot = slot_[static_cast<std::size_t>(id)];
+  if (slot < 0) return point(id).material_position;
+  Vec3 x;
+  read(chunks_[lane_of(slot).chunk].material_position, lane_of(slot).lane, x);
+  return x;
+}
+
+Mat3 Continuum::displacement_gradient(int id) const {
+  const int slot = slot_[static_cast<std::size_t>(id)];
+  if (slot < 0) return point(id).displacement_gradient;
+  Mat3 h;
+  read(chunks_[lane_of(slot).chunk].displacement_gradient, lane_of(slot).lane, h);
+  return h;
+}
+
+// ---- grid -------------------------------------------------------------------------------------------------------
+
+std::array<int, 3> Continuum::block_of(const Vec3& position) const {
+  std::array<int, 3> block;
+  for (int a = 0; a < 3; ++a) {
+    const double cell = (position[a] - constants_.origin[a]) / constants_.cell_size - stencil_shift(settings_.spline);
+    block[static_cast<std::size_t>(a)] = floor_div(static_cast<int>(std::floor(cell)), block_edge);
+  }
+  return block;
+}
+
+int Continuum::table_index(const std::array<int, 3>& block) const {
+  int index = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const int at = block[a] - table_low_[a];
+    if (at < 0 || at >= table_size_[a]) return -1;
+    index = index * table_size_[a] + at;
+  }
+  return index;
+}
+
+int Continuum::find_block(const std::array<int, 3>& block) const {
+  const int index = table_index(block);
+  return index < 0 ? -1 : table_[static_cast<std::size_t>(index)];
+}
+
+int Continuum::make_block(const std::array<int, 3>& block) {
+  const int index = table_index(block);
+  if (index < 0) throw Error(ErrorKind::unstable, "the solve lost a particle: it crossed several cells in one step");
+  int& at = table_[static_cast<std::size_t>(index)];
+  if (at < 0) {
+    at = static_cast<int>(blocks_.size());
+    blocks_.push_back({block});
+    nodes_.resize(nodes_.size() + block_nodes, Node{});
+  }
+  return at;
+}
+
+/// The stencils of a block reach those above it.
+void Continuum::make_blocks_above(const std::array<int, 3>& block) {
+  for (int n = 0; n < 8; ++n) make_block(plus(block, n >> 2, n >> 1 & 1, n & 1));
+}
+
+void Continuum::take_out_escaped() {
+  if (followed_.isEmpty()) return;
+  for (PointChunk& chunk : chunks_)
+    for (int lane = 0; lane < chunk_size; ++lane) {
+      const int id = chunk.id[lane];
+      if (id < 0) continue;
+      PointState state = read(chunk, lane);
+      const Vec3 position = state.material_position + state.displacement;
+      if (followed_.contains(position)) continue;
+      if (!position.allFinite()) require_finite();
+      state.damage = 1;
+      failures_ += state.damage_time < 0;
+      if (state.damage_time < 0) state.damage_time = constants_.time;
+      const Stray at = stencil(id);
+      Node sums[4];
+      gather(at.cell, at.weight, sums);
+      escaped_.push_back({state, head(sums[0]), constants_.time});
+      slot_[static_cast<std::size_t>(id)] = -static_cast<int>(escaped_.size());
+      chunk.id[lane] = -1;
+    }
+}
+
+/// An empty table for these blocks, and those around that strays may enter, and those above these.
+void Continuum::lay_table(const std::vector<std::array<int, 3>>& blocks) {
+  table_low_ = table_size_ = {0, 0, 0};
+  if (!blocks.empty()) {
+    auto low = blocks.front(), high = low;
+    for (const auto& block : blocks)
+      for (std::size_t a = 0; a < 3; ++a) {
+        low[a] = std::min(low[a], block[a]);
+        high[a] = std::max(high[a], block[a]);
+      }
+    for (std::size_t a = 0; a < 3; ++a) {
+      table_low_[a] = low[a] - 1;
+      table_size_[a] = high[a] - low[a] + 4;
+    }
+  }
+  table_.assign(static_cast<std::size_t>(table_size_[0]) * static_cast<std::size_t>(table_size_[1]) *
+                    static_cast<std::size_t>(table_size_[2]),
+                -1);
+}
+
+/// Points block by block, each block beginning with a chunk of its own; the grid where they are.
+void Continuum::sort() {
+  take_out_escaped();
+  std::vector<int> order;
+  std::vector<std::array<int, 3>> home(chunks_.size() * chunk_size);
+  order.reserve(slot_.size());
+  for (std::size_t slot = 0; slot < home.size(); ++slot) {
+    const PointChunk& chunk = chunks_[slot / chunk_size];
+    const int lane = static_cast<int>(slot % chunk_size);
+    if (chunk.id[lane] < 0) continue;
+    Vec3 x, u;
+    read(chunk.material_position, lane, x);
+    read(chunk.displacement, lane, u);
+    home[slot] = block_of(x + u);
+    order.push_back(static_cast<int>(slot));
+  }
+  const auto home_of = [&](int slot) -> const std::array<int, 3>& { return home[static_cast<std::size_t>(slot)]; };
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return home_of(a) < home_of(b); });
+  std::vector<std::array<int, 3>> holding;
+  for (int slot : order)
+    if (holding.empty() || holding.back() != home_of(slot)) holding.push_back(home_of(slot));
+
+  const auto old_blocks = std::move(blocks_);
+  const auto old_nodes = std::move(nodes_);
+  blocks_.clear();
+  nodes_.clear();
+  lay_table(holding);
+  for (const auto& block : holding) make_block(block);
+  holding_ = static_cast<int>(holding.size());
+  for (const auto& block : holding) make_blocks_above(block);
+  carry_velocities(old_blocks, old_nodes);
+
+  std::vector<PointChunk> sorted;
+  sorted.reserve(chunks_.size() + holding.size());
+  int b = -1;
+  for (int slot : order) {
+    if (b < 0 || home_of(slot) != holding[static_cast<std::size_t>(b)]) {
+      ++b;
+      blocks_[static_cast<std::size_t>(b)].first_chunk = static_cast<int>(sorted.size());
+      blocks_[static_cast<std::size_t>(b)].tile = b;
+    }
+    const int lane = blocks_[static_cast<std::size_t>(b)].count++ % chunk_size;
+    if (lane == 0) sorted.push_back(empty_chunk());
+    const Lane from = lane_of(slot);
+    const int id = chunks_[from.chunk].id[from.lane];
+    write(read(chunks_[from.chunk], from.lane), id, lane, sorted.back());
+    slot_[static_cast<std::size_t>(id)] = (static_cast<int>(sorted.size()) - 1) * chunk_size + lane;
+  }
+  chunks_ = std::move(sorted);
+  tiles_.assign(holding.size() * static_cast<std::size_t>(tile_nodes(settings_.spline)), Node{});
+  strays_.resize(holding.size());
+  passes_.resize(holding.size());
+  candidate_slots_.resize(chunks_.size() * chunk_size);
+  held_nodes_blocks_ = 0;
+  sorted_ = true;
+}
+
+void Continuum::carry_velocities(const std::vector<Block>& blocks, const std::vector<Node>& nodes) {
+  for (std::size_t b = 0; b < blocks.size(); ++b)
+    if (const int now = find_block(blocks[b].at); now >= 0)
+      std::copy_n(nodes.begin() + static_cast<std::ptrdiff_t>(b) * block_nodes, block_nodes,
+                  nodes_.begin() + static_cast<std::ptrdiff_t>(now) * block_nodes);
+}
+
+/// Stencil of a point where it is now, without momentum.
+Stray Continuum::stencil(int id) const {
+  const Lane at = lane_of(slot_[static_cast<std::size_t>(id)]);
+  Vec3 x, u;
+  read(chunks_[at.chunk].material_position, at.lane, x);
+  read(chunks_[at.chunk].displacement, at.lane, u);
+  Stray s{};
+  for (int a = 0; a < 3; ++a) {
+    const double cells = (x[a] - constants_.origin[a] + u[a]) / constants_.cell_size;
+    const double low = std::floor(cells - stencil_shift(settings_.spline)), o = cells - low - 1;
+    s.cell[a] = static_cast<int>(low);
+    spline_weights(settings_.spline, o, s.weight[a]);
+  }
+  return s;
+}
+
+/// See StrayHandler.
+void Continuum::gather(const int cell[3], const double weight[3][4], Node sums[4]) const {
+  for (int k = 0; k < 4; ++k) sums[k] = Node{};
+  const int width = stencil_width(settings_.spline);
+  for (int i = 0; i < width; ++i)
+    for (int j = 0; j < width; ++j)
+      for (int k = 0; k < width; ++k) {
+        const std::array<int, 3> at = {cell[0] + i, cell[1] + j, cell[2] + k};
+        std::array<int, 3> block;
+        int local = 0;
+        for (std::size_t a = 0; a < 3; ++a) {
+          block[a] = floor_div(at[a], block_edge);
+          local = local * block_edge + at[a] - block[a] * block_edge;
+        }
+        const int b = find_block(block);
+        if (b < 0) continue;
+        const Node& node = nodes_[static_cast<std::size_t>(b) * block_nodes + static_cast<std::size_t>(local)];
+        const double w = weight[0][i] * weight[1][j] * weight[2][k];
+        const double factor[4] = {w, w * (i - 1), w * (j - 1), w * (k - 1)};
+        for (int s = 0; s < 4; ++s)
+          for (int c = 0; c < 3; ++c) sums[s].value[c] += factor[s] * node.value[c];
+      }
+}
+
+StrayHandler Continuum::stray_handler() {
+  StrayHandler handler;
+  handler.self = this;
+  handler.gather = [](void* self, const int cell[3], const double weight[3][4], Node sums[4]) {
+    static_cast<const Continuum*>(self)->gather(cell, weight, sums);
+  };
+  handler.scatter = [](void* self, int block, const Stray& stray) {
+    static_cast<Continuum*>(self)->strays_[static_cast<std::size_t>(block)].push_back(stray);
+  };
+  return handler;
+}
+
+/// Adds to the tile of the block that the stencil begins in.
+void Continuum::scatter(const Stray& stray) {
+  std::array<int, 3> block;
+  for (std::size_t a = 0; a < 3; ++a) block[a] = floor_div(stray.cell[a], block_edge);
+  const int b = make_block(block);
+  make_blocks_above(block);
+  const std::size_t tile_size = static_cast<std::size_t>(tile_nodes(settings_.spline));
+  Block& home = blocks_[static_cast<std::size_t>(b)];
+  if (home.tile < 0) {
+    home.tile = static_cast<int>(tiles_.size() / tile_size);
+    tiles_.resize(tiles_.size() + tile_size);
+  }
+  Node* tile = tiles_.data() + static_cast<std::size_t>(home.tile) * tile_size;
+  if (!home.tile_live) std::fill_n(tile, tile_size, Node{});
+  home.tile_live = true;
+  const int width = stencil_width(settings_.spline), edge = tile_edge(settings_.spline);
+  for (int i = 0; i < width; ++i)
+    for (int j = 0; j < width; ++j)
+      for (int k = 0; k < width; ++k) {
+        const double w = stray.weight[0][i] * stray.weight[1][j] * stray.weight[2][k];
+        const auto local = [&](std::size_t a, int n) { return stray.cell[a] - block[a] * block_edge + n; };
+        Node& node = tile[(local(0, i) * edge + local(1, j)) * edge + local(2, k)];
+        for (int c = 0; c < 4; ++c)
+          node.value[c] += w * (stray.momentum.value[c] + (i - 1) * stray.slope[0].value[c] +
+                                (j - 1) * stray.slope[1].value[c] + (k - 1) * stray.slope[2].value[c]);
+      }
+}
+
+// ---- time step --------------------------------------------------------------------------------------------------
+
+void Continuum::run(void (*pass)(const StepConstants&, const StrayHandler&, BlockPass&),
+                    std::vector<MotionChunk>* motion) {
+  const StrayHandler handler = stray_handler();
+  const std::size_t tile_size = static_cast<std::size_t>(tile_nodes(settings_.spline));
+  for (std::size_t b = static_cast<std::size_t>(holding_); b < blocks_.size(); ++b) blocks_[b].tile_live = false;
+  tbb::parallel_for(tbb::blocked_range<int>(0, holding_), [&](const tbb::blocked_range<int>& range) {
+    for (int b = range.begin(); b < range.end(); ++b) {
+      Block& block = blocks_[static_cast<std::size_t>(b)];
+      const std::size_t first = static_cast<std::size_t>(block.first_chunk);
+      BlockPass& work = passes_[static_cast<std::size_t>(b)];
+      work = BlockPass{};
+      work.block = b;
+      work.chunks = chunks_.data() + first;
+      work.count = block.count;
+      for (std::size_t a = 0; a < 3; ++a) work.cell[a] = block_edge * block.at[a];
+      for (int n = 0; n < 8; ++n) {
+        const int above = find_block(plus(block.at, n >> 2, n >> 1 & 1, n & 1));
+        work.velocity[n] = above < 0 ? nullptr : nodes_.data() + static_cast<std::size_t>(above) * block_nodes;
+      }
+      work.tile = tiles_.data() + static_cast<std::size_t>(block.tile) * tile_size;
+      work.motion = motion ? motion->data() + first : nullptr;
+      work.candidates = candidate_slots_.data() + first * chunk_size;
+      strays_[static_cast<std::size_t>(b)].clear();
+      pass(constants_, handler, work);
+      block.tile_live = true;
+    }
+  });
+  collect();
+}
+
+/// What the passes found, and their strays to the grid, block by block.
+void Continuum::collect() {
+  failed_ = false;
+  candidates_.clear();
+  bool finite = true;
+  for (const BlockPass& work : passes_) {
+    finite = finite && work.finite;
+    failed_ = failed_ || work.failures > 0;
+    failures_ += work.failures;
+    viscous_work_ += work.viscous_work;
+    resets_ += work.resets;
+    for (int n = 0; n < work.candidate_count; ++n)
+      candidates_.push_back(work.chunks[work.candidates[n] / chunk_size].id[work.candidates[n] % chunk_size]);
+  }
+  if (!finite) require_finite();
+  std::size_t count = 0;
+  for (int b = 0; b < holding_; ++b) {
+    const Block block = blocks_[static_cast<std::size_t>(b)];
+    for (const Stray& stray : strays_[static_cast<std::size_t>(b)]) {
+      for (std::size_t a = 0; a < 3; ++a) {
+        const int local = stray.cell[a] - block_edge * block.at[a];
+        if (local < -furthest_stray || local >= block_edge + furthest_stray) sorted_ = false;
+      }
+      scatter(stray);
+    }
+    count += strays_[static_cast<std::size_t>(b)].size();
+  }
+  if (count * points_per_stray > slot_.size()) sorted_ = false;
+}
+
+void Continuum::start(const std::vector<Motion>& motion) {
+  sort();
+  std::vector<MotionChunk> given(chunks_.size(), MotionChunk{});
+  for (std::size_t id = 0; id < slot_.size(); ++id) {
+    const Lane at = lane_of(slot_[id]);
+    write(motion[id].velocity, at.lane, given[at.chunk].velocity);
+    write(motion[id].affine_velocity, at.lane, given[at.chunk].affine_velocity);
+  }
+  run(kernels_.start, &given);
+}
+
+void Continuum::advance(double time) {
+  if (!sorted_) sort();
+  constants_.time = time;
+  run(kernels_.step, nullptr);
+}
+
+std::vector<Motion> Continuum::finish() {
+  std::vector<MotionChunk> wanted(chunks_.size(), MotionChunk{});
+  if (!sorted_) sort();
+  wanted.resize(chunks_.size());
+  run(kernels_.finish, &wanted);
+  require_finite();
+  std::vector<Motion> motion(slot_.size());
+  for (std::size_t id = 0; id < slot_.size(); ++id) {
+    if (slot_[id] < 0) {
+      motion[id].velocity = escaped_[static_cast<std::size_t>(-1 - slot_[id])].velocity;
+      continue;
+    }
+    const Lane at = lane_of(slot_[id]);
+    read(wanted[at.chunk].velocity, at.lane, motion[id].velocity);
+    read(wanted[at.chunk].affine_velocity, at.lane, motion[id].affine_velocity);
+  }
+  sorted_ = false;
+  return motion;
+}
+
+void Continuum::push(int id, const Vec3& impulse) {
+  Stray stray = stencil(id);
+  for (int a = 0; a < 3; ++a) stray.momentum.value[a] = impulse[a];
+  scatter(stray);
+}
+
+void Continuum::update_grid() {
+  const std::size_t tile_size = static_cast<std::size_t>(tile_nodes(settings_.spline));
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, blocks_.size()), [&](const tbb::blocked_range<std::size_t>& range) {
+        for (std::size_t b = range.begin(); b < range.end(); ++b) {
+          BlockSum sum;
+          sum.nodes = nodes_.data() + b * block_nodes;
+          for (int n = 0; n < 8; ++n) {
+            const int below = find_block(plus(blocks_[b].at, -(n >> 2), -(n >> 1 & 1), -(n & 1)));
+            if (below < 0 || !blocks_[static_cast<std::size_t>(below)].tile_live) continue;
+            sum.tile[n] =
+                tiles_.data() + static_cast<std::size_t>(blocks_[static_cast<std::size_t>(below)].tile) * tile_size;
+          }
+          kernels_.sum(sum);
+        }
+      });
+  if (!held_.empty()) hold_nodes();
+}
+
+// ---- held regions -----------------------------------------------------------------------------------------------
+
+void Continuum::hold(std::vector<HeldRegion> regions) {
+  held_ = std::move(regions);
+  held_impulses_.assign(held_.size(), Vec3::Zero());
+  held_nodes_blocks_ = 0;
+}
+
+void Continuum::find_held_nodes() {
+  held_nodes_.clear();
+  const Vec3 origin(constants_.origin[0], constants_.origin[1], constants_.origin[2]);
+  for (std::size_t b = 0; b < blocks_.size(); ++b)
+    for (int n = 0; n < block_nodes; ++n) {
+      const auto& at = blocks_[b].at;
+      const Vec3 cell(block_edge * at[0] + n / 16, block_edge * at[1] + n / 4 % 4, block_edge * at[2] + n % 4);
+      for (std::size_t r = 0; r < held_.size(); ++r)
+        if (held_[r].region.contains(origin + constants_.cell_size * cell))
+          held_nodes_.push_back({static_cast<int>(b) * block_nodes + n, static_cast<int>(r)});
+    }
+  held_nodes_blocks_ = blocks_.size();
+}
+
+void Continuum::hold_nodes() {
+  if (held_nodes_blocks_ != blocks_.size()) find_held_nodes();
+  for (const HeldNode& at : held_nodes_) {
+    Node& node = nodes_[static_cast<std::size_t>(at.node)];
+    const HeldRegion& region = held_[static_cast<std::size_t>(at.region)];
+    for (int a = 0; a < 3; ++a) {
+      if (!region.axes[static_cast<std::size_t>(a)]) continue;
+      held_impulses_[static_cast<std::size_t>(at.region)][a] += node.value[3] * (region.velocity[a] - node.value[a]);
+      node.value[a] = region.velocity[a];
+    }
+  }
+}
+
+// ---- cracks and sums --------------------------------------------------------------------------------------------
+
+void Continuum::start_crack(int id, double strength, double softening_slope) {
+  const Lane at = lane_of(slot_[static_cast<std::size_t>(id)]);
+  PointChunk& chunk = chunks_[at.chunk];
+  chunk.strength[at.lane] = chunk.threshold[at.lane] = strength;
+  chunk.softening_slope[at.lane] = softening_slope;
+}
+
+void Continuum::require_finite() const {
+  for (std::size_t id = 0; id < slot_.size(); ++id) {
+    const PointState p = point(static_cast<int>(id));
+    if (p.displacement_gradient.allFinite() && p.displacement.allFinite()) continue;
+    char text[400];
+    const Mat3& h = p.displacement_gradient;
+    std::snprintf(
+        text, sizeof text,
+        "the solve lost particle %zu at (%g, %g, %g): displacement (%g, %g, %g), displacement gradient (%g, %g, "
+        "%g; %g, %g, %g; %g, %g, %g), damage %g; lower the time step (cfl)",
+        id, p.material_position[0], p.material_position[1], p.material_position[2], p.displacement[0],
+        p.displacement[1], p.displacement[2], h(0, 0), h(0, 1), h(0, 2), h(1, 0), h(1, 1), h(1, 2), h(2, 0), h(2, 1),
+        h(2, 2), p.damage);
+    throw Error(ErrorKind::unstable, text);
+  }
+}
+
+Vec3 Continuum::momentum(const std::vector<Motion>& motion) const {
+  Vec3 sum = Vec3::Zero();
+  for (const Motion& m : motion) sum += particle_mass() * m.velocity;
+  return sum;
+}
+
+Vec3 Continuum::angular_momentum(const std::vector<Motion>& motion) const {
+  Vec3 sum = Vec3::Zero();
+  const double moment = particle_mass() * spline_moment(settings_.spline) * cell_size() * cell_size();
+  for (int id = 0; id < size(); ++id) {
+    const Motion& m = motion[static_cast<std::size_t>(id)];
+    const Mat3& c = m.affine_velocity;
+    const Vec3 axial(c(2, 1) - c(1, 2), c(0, 2) - c(2, 0), c(1, 0) - c(0, 1));
+    sum += particle_mass() * (material_position(id) + displacement(id)).cross(m.velocity) + moment * axial;
+  }
+  return sum;
+}
+
+StoredEnergy Continuum::energy(const std::vector<Motion>& motion) const {
+  StoredEnergy sum;
+  const double moment = spline_moment(settings_.spline) * cell_size() * cell_size();
+  for (int id = 0; id < size(); ++id) {
+    const Motion& m = motion[static_cast<std::size_t>(id)];
+    sum.kinetic += 0.5 * particle_mass() * (m.velocity.squaredNorm() + moment * m.affine_velocity.squaredNorm());
+    const PointState p = point(id);
+    const PrincipalStress stress =
+        principal_stress(elasticity_.cauchy_stress(p.displacement_gradient, volume_change(p.displacement_gradient)));
+    // Shares of the stored energy by the sign of stress, in the quadratic form of small strains.
+    double tensile = 0, compressive = 0;
+    const double nu = constants_.lame_lambda / (2 * (constants_.lame_lambda + constants_.shear_modulus)),
+                 trace = stress.value.sum();
+    for (int k = 0; k < 3; ++k) {
+      const double strain = (1 + nu) * stress.value[k] - nu * trace;
+      (stress.value[k] > 0 ? tensile : compressive) += stress.value[k] * strain;
+    }
+    const double whole = tensile + compressive;
+    const double energy = elasticity_.energy(p.displacement_gradient) * constants_.particle_volume;
+    const double share = whole > 0 ? tensile / whole : 0;
+    sum.tension += (1 - p.damage) * share * energy;
+    sum.compression += (1 - share) * energy;
+  }
+  return sum;
+}
+
+std::size_t Continuum::memory() const {
+  return chunks_.size() * sizeof(PointChunk) + slot_.size() * sizeof(int) + nodes_.size() * sizeof(Node) +
+         tiles_.size() * sizeof(Node) + table_.size() * sizeof(int) + blocks_.size() * sizeof(Block) +
+         candidate_slots_.size() * sizeof(int) + passes_.size() * sizeof(BlockPass);
+}
+
+}  // namespace sunder::mpm

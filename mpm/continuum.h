@@ -1,0 +1,180 @@
+#pragma once
+/// A deformable body as material points that move through a background grid: MLS-MPM (Hu et al. 2018) with APIC
+/// transfers (Jiang et al. 2015), neo-Hookean elasticity, Rankine damage and viscosity. What pushes it and where its
+/// cracks may start is the business of others.
+#include <array>
+#include <limits>
+#include <vector>
+
+#include "core/types.h"
+#include "mpm/block_pass.h"
+#include "mpm/material.h"
+#include "mpm/neo_hookean.h"
+
+namespace sunder::mpm {
+
+struct ContinuumSettings {
+  double cell_size = 0;        ///< h [m]
+  double time_step = 0;        ///< [s]
+  double viscosity = 0;        ///< of undamaged material [Pa s]
+  Vec3 anchor = Vec3::Zero();  ///< some node lies here [m]
+  Spline spline = Spline::quadratic;
+  InstructionSet instructions = best_instruction_set();
+};
+
+/// Everything that a point remembers from step to step.
+struct PointState {
+  Vec3 material_position = Vec3::Zero();  ///< X [m]
+  Vec3 displacement = Vec3::Zero();       ///< u = x - X [m]
+  Mat3 displacement_gradient = Mat3::Zero();
+  double threshold = std::numeric_limits<double>::infinity();  ///< see PointChunk
+  double strength = std::numeric_limits<double>::infinity();
+  double softening_slope = 0;
+  double damage = 0;
+  double damage_time = -1;
+  double dissipated = 0;
+};
+
+struct Motion {
+  Vec3 velocity = Vec3::Zero();         ///< [m/s]
+  Mat3 affine_velocity = Mat3::Zero();  ///< C [1/s]
+};
+
+/// Nodes inside `region`, which stands still in space, move at the given velocity along the axes that are held.
+struct HeldRegion {
+  Box region;
+  Vec3 velocity = Vec3::Zero();  ///< [m/s]
+  std::array<bool, 3> axes = {true, true, true};
+};
+
+/// Energies of all points [J].
+struct StoredEnergy {
+  double kinetic = 0;                   ///< with the affine part, m moment h^2 |C|^2 / 2
+  double tension = 0, compression = 0;  ///< elastic, in the principal stresses of either sign, tension after damage
+  double elastic() const { return tension + compression; }
+};
+
+/// A time step is advance(), any number of push(), then update_grid(). Points are named by their index in the points
+/// given. Results do not depend on the number of threads.
+class Continuum {
+ public:
+  /// Each point has volume `particle_volume` [m^3]. Nothing is ever damaged until thresholds are set.
+  Continuum(const std::vector<Vec3>& points, double particle_volume, const Material& material,
+            const ContinuumSettings& settings);
+
+  int size() const { return static_cast<int>(slot_.size()); }
+  PointState point(int id) const;
+  /// For set-up, before the first step.
+  void set_point(int id, const PointState& state);
+  Vec3 displacement(int id) const;
+  Vec3 material_position(int id) const;
+  Mat3 displacement_gradient(int id) const;
+
+  /// Before the first step; without it the body starts at rest. Continue with update_grid().
+  void start(const std::vector<Motion>& motion);
+  /// From the velocities of the grid to new positions and deformations at `time`, stresses and damage there, and the
+  /// momentum of the grid. Errors: ErrorKind::unstable when a state stops being finite.
+  void advance(double time);
+  /// Adds an impulse to the momentum of the grid around a point [N s].
+  void push(int id, const Vec3& impulse);
+  /// Adds up the momentum of the grid and makes it velocities.
+  void update_grid();
+  /// Motion of all points after the last update_grid(); displacements and deformations follow it. The body can only be
+  /// started again.
+  std::vector<Motion> finish();
+
+  void hold(std::vector<HeldRegion> regions);
+  /// Impulse that each held region gave to the body so far [N s].
+  const std::vector<Vec3>& held_impulses() const { return held_impulses_; }
+
+  /// Points without a crack whose largest principal stress exceeded their threshold in the last advance().
+  const std::vector<int>& candidates() const { return candidates_; }
+  /// From now on the point follows this softening law.
+  void start_crack(int id, double strength, double softening_slope);
+  /// True when some point failed in the last advance(); and how many have so far.
+  bool failed() const { return failed_; }
+  long failures() const { return failures_; }
+  double viscous_work() const { return viscous_work_; }  ///< dissipated so far [J]
+  long resets() const { return resets_; }                ///< points whose deformation left the range of the law
+
+  /// Points outside of this box, which the caller moves along, stop taking part when points are sorted next: debris
+  /// that is far away. They are failed and keep their velocity.
+  void follow(const Box& box) { followed_ = box; }
+  bool escaped(int id) const { return slot_[static_cast<std::size_t>(id)] < 0; }
+  long escapes() const { return static_cast<long>(escaped_.size()); }
+
+  const NeoHookean& elasticity() const { return elasticity_; }
+  double particle_mass() const { return constants_.particle_mass; }
+  double cell_size() const { return constants_.cell_size; }
+  /// Momentum and angular momentum about the origin, with that of the affine velocities, m moment h^2 axial(C).
+  Vec3 momentum(const std::vector<Motion>& motion) const;
+  Vec3 angular_momentum(const std::vector<Motion>& motion) const;
+  StoredEnergy energy(const std::vector<Motion>& motion) const;
+  /// Of points and grid together [bytes].
+  std::size_t memory() const;
+
+ private:
+  struct Block {
+    std::array<int, 3> at;  ///< in blocks
+    int first_chunk = 0, count = 0;
+    int tile = -1;
+    bool tile_live = false;  ///< the tile holds momentum of this step
+  };
+  struct Escaped {
+    PointState state;
+    Vec3 velocity;
+    double since;
+  };
+
+  void sort();
+  void take_out_escaped();
+  void lay_table(const std::vector<std::array<int, 3>>& blocks);
+  void carry_velocities(const std::vector<Block>& blocks, const std::vector<Node>& nodes);
+  std::array<int, 3> block_of(const Vec3& position) const;
+  int table_index(const std::array<int, 3>& block) const;
+  int find_block(const std::array<int, 3>& block) const;
+  int make_block(const std::array<int, 3>& block);
+  void make_blocks_above(const std::array<int, 3>& block);
+  void find_held_nodes();
+  void run(void (*pass)(const StepConstants&, const StrayHandler&, BlockPass&), std::vector<MotionChunk>* motion);
+  void scatter(const Stray& stray);
+  void hold_nodes();
+  void require_finite() const;
+  Stray stencil(int id) const;
+  void gather(const int cell[3], const double weight[3][4], Node sums[4]) const;
+  StrayHandler stray_handler();
+  void collect();
+
+  const ContinuumSettings settings_;
+  const NeoHookean elasticity_;
+  const StepKernels& kernels_;
+  StepConstants constants_;
+  std::vector<PointChunk> chunks_;
+  std::vector<int> slot_;  ///< of each point: chunk * chunk_size + lane, or -1 - index in escaped_
+  std::vector<Escaped> escaped_;
+
+  // The grid: a dense table of sparse blocks. Those that hold points come first.
+  std::array<int, 3> table_low_ = {0, 0, 0}, table_size_ = {0, 0, 0};
+  std::vector<int> table_;
+  std::vector<Block> blocks_;
+  int holding_ = 0;
+  std::vector<Node> nodes_, tiles_;
+  std::vector<std::vector<Stray>> strays_;  ///< by block
+  std::vector<BlockPass> passes_;
+  std::vector<int> candidate_slots_, candidates_;
+
+  std::vector<HeldRegion> held_;
+  struct HeldNode {
+    int node, region;
+  };
+  std::vector<HeldNode> held_nodes_;
+  std::size_t held_nodes_blocks_ = 0;  ///< blocks that held_nodes_ was made for
+  std::vector<Vec3> held_impulses_;
+
+  Box followed_;
+  bool sorted_ = false, failed_ = false;
+  double viscous_work_ = 0;
+  long resets_ = 0, failures_ = 0;
+};
+
+}  // namespace sunder::mpm
