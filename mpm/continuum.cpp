@@ -545,6 +545,13 @@ void Continuum::start_crack(int id, double strength, double softening_slope) {
   chunk.softening_slope[at.lane] = softening_slope;
 }
 
+void Continuum::lower_threshold(int id, double threshold) {
+  const int slot = slot_[static_cast<std::size_t>(id)];
+  if (slot < 0) return;
+  double& now = chunks_[lane_of(slot).chunk].threshold[lane_of(slot).lane];
+  now = std::min(now, threshold);
+}
+
 void Continuum::require_finite() const {
   for (std::size_t id = 0; id < slot_.size(); ++id) {
     const PointState p = point(static_cast<int>(id));

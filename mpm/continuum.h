@@ -91,6 +91,8 @@ class Continuum {
   const std::vector<int>& candidates() const { return candidates_; }
   /// From now on the point follows this softening law.
   void start_crack(int id, double strength, double softening_slope);
+  /// The point becomes a candidate at this stress already.
+  void lower_threshold(int id, double threshold);
   /// True when some point failed in the last advance(); and how many have so far.
   bool failed() const { return failed_; }
   long failures() const { return failures_; }

@@ -11,9 +11,14 @@
 namespace sunder::mpm {
 namespace {
 
-/// Shields are there to stay and only the direction of the stress can turn out of them, so a shielded point need not be
-/// asked in every step. In this many a wave runs little more than a cell.
-constexpr long steps_between_looks = 4;
+/// Fronts take seven steps to cross a cell, so that asking every other one loses nothing.
+constexpr long steps_between_decisions = 2;
+/// What the fronts say about a point changes with new fronts, which ask for another look, and otherwise only as its
+/// stress turns or grows: fronts run about a cell in this many steps.
+constexpr long steps_between_looks = 8, shielded_steps_between_looks = 16;
+constexpr double same_direction = 0.985;  ///< 10 degrees
+/// Candidates worth waking a thread for.
+constexpr std::size_t grain = 48;
 
 Softening law_of(const Material& m, const SolveSettings& settings, double cell_size) {
   const double k = settings.damage == DamageModel::front ? settings.front.energy_factor : 1;
@@ -42,8 +47,10 @@ CrackGrowth::CrackGrowth(const Material& material, const SolveSettings& settings
     : law_(law_of(material, settings, body.cell_size())),
       nucleation_strength_(strength_scatter(points, material.weibull_modulus,
                                             settings.scatter_length * body.cell_size(), settings.seed)),
-      look_again_(points.size(), 0),
-      fronts_(box_of(points), body.cell_size(), material.p_wave_speed(), settings.front) {
+      reach_(settings.front.shield_radius * body.cell_size()),
+      memory_(points.size()),
+      fronts_(box_of(points), body.cell_size(), material.p_wave_speed(), settings.front),
+      neighbourhoods_(box_of(points), body.cell_size()) {
   for (int id = 0; id < body.size(); ++id) {
     double& strength = nucleation_strength_[static_cast<std::size_t>(id)];
     PointState state = body.point(id);
@@ -53,56 +60,96 @@ CrackGrowth::CrackGrowth(const Material& material, const SolveSettings& settings
       state.softening_slope = law.slope;
     }
     strength *= material.tensile_strength;
-    if (settings.damage == DamageModel::front) state.threshold = std::min(strength, law_.strength);
+    if (settings.damage == DamageModel::front) {
+      state.threshold = strength;
+      neighbourhoods_.bin(state.material_position).points.push_back(id);
+    }
     body.set_point(id, state);
   }
 }
 
+/// Points that the new front may have a say about fail at its strength from now on, and the near ones are asked again.
+void CrackGrowth::wake(const Candidate& front, Continuum& body) {
+  MaterialBins<Neighbourhood>::visit(neighbourhoods_, front.position, reach_, [&](Neighbourhood& there) {
+    if (!there.awake)
+      for (int id : there.points) body.lower_threshold(id, law_.strength);
+    there.awake = true;
+    return false;
+  });
+  MaterialBins<Neighbourhood>::visit(neighbourhoods_, front.position, fronts_.near_distance(),
+                                     [&](Neighbourhood& there) {
+                                       for (int id : there.points) {
+                                         if (!fronts_.reaches(front.position, front.normal, body.material_position(id)))
+                                           continue;
+                                         memory_[static_cast<std::size_t>(id)].look_again = 0;
+                                         memory_[static_cast<std::size_t>(id)].near_fronts = true;
+                                       }
+                                       return false;
+                                     });
+}
+
 Candidate CrackGrowth::candidate(int id, const Continuum& body) const {
   const Mat3 h = body.displacement_gradient(id);
-  const PrincipalStress stress = principal_stress(body.elasticity().cauchy_stress(h, volume_change(h)));
-  return {id, body.material_position(id), stress.direction.col(2), stress.value[2],
-          stress.value[2] / nucleation_strength_[static_cast<std::size_t>(id)]};
+  const auto stress = largest_principal_stress(body.elasticity().cauchy_stress(h, volume_change(h)));
+  return {id, body.material_position(id), stress.direction, stress.value,
+          stress.value / nucleation_strength_[static_cast<std::size_t>(id)]};
+}
+
+/// Near fronts that had nothing to say are not asked again before there are new ones or the stress has turned.
+CrackFronts::Sight CrackGrowth::look(const Candidate& c, double time) {
+  Memory& memory = memory_[static_cast<std::size_t>(c.particle)];
+  const bool turned = std::abs(memory.normal.dot(c.normal)) < same_direction;
+  const CrackFronts::Hint hint{!memory.near_fronts && !turned, memory.shielder};
+  const auto sight = fronts_.look(c.position, c.normal, time, hint);
+  memory.shielder = sight.shielder;
+  if (!hint.far) {
+    memory.near_fronts = sight.early || sight.ahead || sight.fills;
+    memory.normal = c.normal;
+  }
+  return sight;
+}
+
+/// Strongest first, ties by index. What the fronts of earlier steps say has been asked in parallel; only fronts of this
+/// step are asked in order.
+void CrackGrowth::decide(const std::vector<Asked>& asked, double time, Continuum& body) {
+  const int known = fronts_.count();
+  for (const auto& [c, earlier] : asked) {
+    const auto sight = fronts_.count() > known ? earlier | fronts_.look(c.position, c.normal, time, known) : earlier;
+    const Verdict verdict = sight.verdict();
+    const double needed =
+        verdict == Verdict::nucleate ? nucleation_strength_[static_cast<std::size_t>(c.particle)] : law_.strength;
+    if (verdict == Verdict::wait || c.stress <= needed) {
+      if (!sight.early)
+        memory_[static_cast<std::size_t>(c.particle)].look_again =
+            step_ + (sight.shields ? shielded_steps_between_looks : steps_between_looks);
+      continue;
+    }
+    body.start_crack(c.particle, law_.strength, law_.slope);
+    if (verdict == Verdict::nucleate) ++nuclei_;
+    if (verdict == Verdict::filler) continue;
+    fronts_.add(c.position, c.normal, time);
+    wake(c, body);
+  }
 }
 
 void CrackGrowth::grow(double time, Continuum& body) {
-  ++step_;
+  if (++step_ % steps_between_decisions != 0) return;
   std::vector<int> ids;
   for (int id : body.candidates())
-    if (look_again_[static_cast<std::size_t>(id)] <= step_) ids.push_back(id);
+    if (memory_[static_cast<std::size_t>(id)].look_again <= step_) ids.push_back(id);
   if (ids.empty()) return;
-  std::vector<Candidate> candidates(ids.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, ids.size(), 64), [&](const auto& range) {
-    for (std::size_t n = range.begin(); n < range.end(); ++n) candidates[n] = candidate(ids[n], body);
+  std::vector<Asked> asked(ids.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, ids.size(), grain), [&](const auto& range) {
+    for (std::size_t n = range.begin(); n < range.end(); ++n) {
+      asked[n].candidate = candidate(ids[n], body);
+      asked[n].sight = look(asked[n].candidate, time);
+    }
   });
-  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-    return a.urgency > b.urgency || (a.urgency == b.urgency && a.particle < b.particle);
+  std::sort(asked.begin(), asked.end(), [](const Asked& a, const Asked& b) {
+    const Candidate &p = a.candidate, &q = b.candidate;
+    return p.urgency > q.urgency || (p.urgency == q.urgency && p.particle < q.particle);
   });
-  decide(candidates, time, body);
-}
-
-/// Strongest first, ties by index. What the fronts of earlier steps say is asked in parallel; only fronts of this step
-/// are asked in order.
-void CrackGrowth::decide(const std::vector<Candidate>& candidates, double time, Continuum& body) {
-  std::vector<CrackFronts::Sight> sights(candidates.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, candidates.size(), 16), [&](const auto& range) {
-    for (std::size_t n = range.begin(); n < range.end(); ++n)
-      sights[n] = fronts_.look(candidates[n].position, candidates[n].normal, time);
-  });
-  const int known = fronts_.count();
-  for (std::size_t n = 0; n < candidates.size(); ++n) {
-    const Candidate& c = candidates[n];
-    const auto sight =
-        fronts_.count() > known ? sights[n] | fronts_.look(c.position, c.normal, time, known) : sights[n];
-    const Verdict verdict = sight.verdict();
-    if (sight.shields) look_again_[static_cast<std::size_t>(c.particle)] = step_ + steps_between_looks;
-    const double needed =
-        verdict == Verdict::nucleate ? nucleation_strength_[static_cast<std::size_t>(c.particle)] : law_.strength;
-    if (verdict == Verdict::wait || c.stress <= needed) continue;
-    body.start_crack(c.particle, law_.strength, law_.slope);
-    if (verdict == Verdict::nucleate) ++nuclei_;
-    if (verdict != Verdict::filler) fronts_.add(c.position, c.normal, time);
-  }
+  decide(asked, time, body);
 }
 
 }  // namespace sunder::mpm

@@ -24,14 +24,33 @@ class CrackGrowth {
   long nuclei() const { return nuclei_; }  ///< cracks that started in virgin material
 
  private:
+  void wake(const Candidate& front, Continuum& body);
   Candidate candidate(int id, const Continuum& body) const;
-  void decide(const std::vector<Candidate>& candidates, double time, Continuum& body);
+  CrackFronts::Sight look(const Candidate& candidate, double time);
+  struct Asked {
+    Candidate candidate;
+    CrackFronts::Sight sight;
+  };
+  void decide(const std::vector<Asked>& asked, double time, Continuum& body);
 
   const Softening law_;
   std::vector<double> nucleation_strength_;
-  std::vector<long> look_again_;  ///< step from which a shielded point is asked again
+  const double reach_;  ///< within which fronts have a say [m]
+  /// What a point was last told.
+  struct Memory {
+    long look_again = 0;         ///< step from which it is asked again
+    int shielder = -1;           ///< front that shielded it; -1: none
+    bool near_fronts = false;    ///< fronts may be so near that they do more than shield
+    Vec3 normal = Vec3::Zero();  ///< with which it asked about those
+  };
+  std::vector<Memory> memory_;
   long step_ = 0;
   CrackFronts fronts_;
+  struct Neighbourhood {
+    std::vector<int> points;
+    bool awake = false;  ///< a front is within its reach; before, only the nucleation strength of the points matters
+  };
+  MaterialBins<Neighbourhood> neighbourhoods_;
   long nuclei_ = 0;
 };
 

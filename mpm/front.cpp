@@ -1,6 +1,5 @@
 #include "mpm/front.h"
 
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -10,59 +9,57 @@ double radians(double degrees) { return degrees * std::numbers::pi / 180; }
 }  // namespace
 
 CrackFronts::CrackFronts(const Box& domain, double cell_size, double p_wave_speed, const FrontSettings& settings)
-    : origin_(domain.min()),
-      radius_(settings.shield_radius * cell_size),
-      bin_size_(0.5 * radius_),
+    : radius_(settings.shield_radius * cell_size),
       cell_size_(cell_size),
       filler_width_(settings.filler_width * cell_size),
       reach_(settings.ahead_reach * cell_size),
       near_(std::max(std::hypot(filler_width_, cell_size), reach_)),
       speed_(settings.speed * p_wave_speed),
       tan_ahead_(std::tan(radians(settings.ahead_angle))),
-      cos_parallel_(std::cos(radians(settings.parallel_angle))) {
-  std::size_t count = 1;
-  for (std::size_t a = 0; a < 3; ++a) {
-    size_[a] = static_cast<int>(domain.sizes()[static_cast<Eigen::Index>(a)] / bin_size_) + 1;
-    count *= static_cast<std::size_t>(size_[a]);
-  }
-  bins_.resize(count);
-}
-
-std::array<int, 3> CrackFronts::bin(const Vec3& x) const {
-  std::array<int, 3> at;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const Eigen::Index axis = static_cast<Eigen::Index>(a);
-    at[a] = std::clamp(static_cast<int>((x[axis] - origin_[axis]) / bin_size_), 0, size_[a] - 1);
-  }
-  return at;
-}
+      cos_parallel_(std::cos(radians(settings.parallel_angle))),
+      bins_(domain, 0.5 * radius_) {}
 
 void CrackFronts::add(const Vec3& position, const Vec3& normal, double time) {
-  const auto at = bin(position);
-  all_.push_back({position, normal, time});
-  bins_[static_cast<std::size_t>((at[0] * size_[1] + at[1]) * size_[2] + at[2])].push_back(all_.back());
+  all_.push_back({position, normal, time, count()});
+  bins_.bin(position).push_back(all_.back());
+}
+
+CrackFronts::Place CrackFronts::place(const Vec3& d, const Vec3& front_normal) const {
+  const double squared = d.squaredNorm();
+  if (squared > radius_ * radius_) return Place::away;
+  const double off_plane = std::abs(d.dot(front_normal));
+  const double in_plane = std::sqrt(std::max(0.0, squared - off_plane * off_plane));
+  if (off_plane <= in_plane * tan_ahead_) return squared > reach_ * reach_ ? Place::away : Place::ahead;
+  if (off_plane > filler_width_) return Place::beside;
+  return in_plane <= cell_size_ ? Place::in_band : Place::away;
+}
+
+bool CrackFronts::reaches(const Vec3& front, const Vec3& front_normal, const Vec3& position) const {
+  const Place at = place(position - front, front_normal);
+  return at == Place::in_band || at == Place::ahead;
 }
 
 CrackFronts::Sight CrackFronts::sight_of(const Front& front, const Query& query) const {
+  if (std::abs(query.normal.dot(front.normal)) < cos_parallel_) return {};
   const Vec3 d = query.position - front.position;
-  const double squared = d.squaredNorm();
-  const double off_plane = std::abs(d.dot(front.normal));
-  const double in_plane = std::sqrt(std::max(0.0, squared - off_plane * off_plane));
-  if (off_plane > in_plane * tan_ahead_) {
-    if (off_plane > filler_width_) return {.shields = true};
-    return {.fills = in_plane <= cell_size_};
+  switch (place(d, front.normal)) {
+    case Place::away:
+      break;
+    case Place::in_band:
+      return {.fills = true};
+    case Place::beside:
+      return {.shields = true, .shielder = front.number};
+    case Place::ahead:
+      const bool arrived = query.time - front.time >= d.norm() / speed_;
+      return {.ahead = arrived, .early = !arrived};
   }
-  if (squared > reach_ * reach_) return {};
-  const bool arrived = query.time - front.time >= std::sqrt(squared) / speed_;
-  return {.ahead = arrived, .early = !arrived};
+  return {};
 }
 
 template <class Enough>
 bool CrackFronts::scan_list(std::span<const Front> fronts, const Query& query, const Enough& enough,
                             Sight& sight) const {
   for (const Front& front : fronts) {
-    if ((query.position - front.position).squaredNorm() > radius_ * radius_) continue;
-    if (std::abs(query.normal.dot(front.normal)) < cos_parallel_) continue;
     sight = sight | sight_of(front, query);
     if (enough(sight)) return true;
   }
@@ -72,27 +69,28 @@ bool CrackFronts::scan_list(std::span<const Front> fronts, const Query& query, c
 template <class Enough>
 CrackFronts::Sight CrackFronts::scan(const Query& query, double distance, const Enough& enough) const {
   Sight sight;
-  const auto low = bin(query.position - Vec3::Constant(distance));
-  const auto high = bin(query.position + Vec3::Constant(distance));
-  for (int i = low[0]; i <= high[0]; ++i)
-    for (int j = low[1]; j <= high[1]; ++j)
-      for (int k = low[2]; k <= high[2]; ++k)
-        if (scan_list(bins_[static_cast<std::size_t>((i * size_[1] + j) * size_[2] + k)], query, enough, sight))
-          return sight;
+  MaterialBins<std::vector<Front>>::visit(bins_, query.position, distance, [&](const std::vector<Front>& fronts) {
+    return scan_list(fronts, query, enough, sight);
+  });
   return sight;
 }
 
 CrackFronts::Sight CrackFronts::look(const Vec3& position, const Vec3& normal, double time, int first) const {
-  const Query query{position, normal, time};
-  const auto fills = [](const Sight& s) { return s.fills; };
-  if (first > 0) {  // the few new ones: quicker without the bins
-    Sight sight;
-    scan_list(std::span(all_).subspan(static_cast<std::size_t>(first)), query, fills, sight);
-    return sight;
-  }
-  // A front further than near_ can only shield, and one that shields is as good as many.
-  const Sight near = scan(query, near_, fills);
+  Sight sight;
+  scan_list(
+      std::span(all_).subspan(static_cast<std::size_t>(first)), {position, normal, time, 0},
+      [](const Sight& s) { return s.fills; }, sight);
+  return sight;
+}
+
+CrackFronts::Sight CrackFronts::look(const Vec3& position, const Vec3& normal, double time, const Hint& hint) const {
+  const Query query{position, normal, time, 0};
+  Sight near;
+  if (!hint.far) near = scan(query, near_, [](const Sight& s) { return s.fills; });
   if (near.fills || near.shields) return near;
+  // A front further than that can only shield, and one that shields is as good as many.
+  if (hint.shielder >= 0) near = near | sight_of(all_[static_cast<std::size_t>(hint.shielder)], query);
+  if (near.shields) return near;
   return near | scan(query, radius_, [](const Sight& s) { return s.shields; });
 }
 

@@ -2,6 +2,8 @@
 /// Crack-front rules: a crack is a surface with a front of finite speed. A purely local strength criterion knows
 /// neither, and where the grid is much coarser than the material's process zone it turns the whole overstressed region
 /// to powder.
+#include <algorithm>
+#include <array>
 #include <span>
 #include <vector>
 
@@ -27,6 +29,64 @@ enum class Verdict {
   nucleate,  ///< nothing near: a new crack if the stress exceeds the nucleation strength
 };
 
+/// One bin per cube of material space.
+template <class Bin>
+class MaterialBins {
+ public:
+  MaterialBins(const Box& domain, double bin_size) : origin_(domain.min()), bin_size_(bin_size) {
+    std::size_t count = 1;
+    for (int a = 0; a < 3; ++a) {
+      size_[static_cast<std::size_t>(a)] = static_cast<int>(domain.sizes()[a] / bin_size_) + 1;
+      count *= static_cast<std::size_t>(size_[static_cast<std::size_t>(a)]);
+    }
+    bins_.resize(count);
+  }
+
+  Bin& bin(const Vec3& x) {
+    const auto at = index(x);
+    return bins_[static_cast<std::size_t>((at[0] * size_[1] + at[1]) * size_[2] + at[2])];
+  }
+
+  /// Calls visit(bin) for the bins within `distance` of x, which lies in the domain, until it returns true.
+  template <class Bins, class Visit>
+  static void visit(Bins& bins, const Vec3& x, double distance, const Visit& visit) {
+    const auto low = bins.index(x - Vec3::Constant(distance)), high = bins.index(x + Vec3::Constant(distance));
+    // Distance of x from the bins along each axis, squared.
+    const auto gap = [&](int axis, int n) {
+      const double from = bins.origin_[axis] + n * bins.bin_size_ - x[axis], to = -from - bins.bin_size_;
+      const double d = std::max({from, to, 0.0});
+      return d * d;
+    };
+    const double squared = distance * distance;
+    for (int i = low[0]; i <= high[0]; ++i) {
+      const double gap_x = gap(0, i);
+      for (int j = low[1]; j <= high[1]; ++j) {
+        const double gap_xy = gap_x + gap(1, j);
+        if (gap_xy > squared) continue;
+        for (int k = low[2]; k <= high[2]; ++k)
+          if (gap_xy + gap(2, k) <= squared &&
+              visit(bins.bins_[static_cast<std::size_t>((i * bins.size_[1] + j) * bins.size_[2] + k)]))
+            return;
+      }
+    }
+  }
+
+ private:
+  std::array<int, 3> index(const Vec3& x) const {
+    std::array<int, 3> at;
+    for (int a = 0; a < 3; ++a) {
+      const std::size_t n = static_cast<std::size_t>(a);
+      at[n] = std::clamp(static_cast<int>((x[a] - origin_[a]) / bin_size_), 0, size_[n] - 1);
+    }
+    return at;
+  }
+
+  Vec3 origin_;
+  double bin_size_;
+  std::array<int, 3> size_;
+  std::vector<Bin> bins_;
+};
+
 /// The front particles so far, binned in material space.
 class CrackFronts {
  public:
@@ -39,13 +99,26 @@ class CrackFronts {
   /// >= distance / speed. Only what the verdict needs is looked up.
   struct Sight {
     bool fills = false, shields = false, ahead = false, early = false;
+    int shielder = -1;  ///< a front that shields, by sequence number
     Sight operator|(const Sight& o) const {
-      return {fills || o.fills, shields || o.shields, ahead || o.ahead, early || o.early};
+      return {fills || o.fills, shields || o.shields, ahead || o.ahead, early || o.early,
+              std::max(shielder, o.shielder)};
     }
     /// Filler before shield before ahead before early: a crack fills its band first, and never grows a neighbour.
     Verdict verdict() const;
   };
   Sight look(const Vec3& position, const Vec3& normal, double time, int first = 0) const;
+
+  /// What is known of a candidate from earlier looks, to be quicker.
+  struct Hint {
+    bool far = false;   ///< no front is so near that it could do more than shield
+    int shielder = -1;  ///< a front that shielded before
+  };
+  Sight look(const Vec3& position, const Vec3& normal, double time, const Hint& hint) const;
+
+  /// Within this distance a front can do more than shield [m]; and whether one would, were its normal parallel enough.
+  double near_distance() const { return near_; }
+  bool reaches(const Vec3& front, const Vec3& front_normal, const Vec3& position) const;
 
   void add(const Vec3& position, const Vec3& normal, double time);
   int count() const { return static_cast<int>(all_.size()); }
@@ -54,10 +127,13 @@ class CrackFronts {
   struct Front {
     Vec3 position, normal;
     double time;
+    int number;
   };
   using Query = Front;
-  std::array<int, 3> bin(const Vec3& x) const;
-  /// What one front says that is within R_s and parallel enough.
+  enum class Place { away, in_band, beside, ahead };
+  /// Where a point stands that is `d` away from a front.
+  Place place(const Vec3& d, const Vec3& front_normal) const;
+  /// What one front says; nothing unless it is within R_s and parallel enough.
   Sight sight_of(const Front& front, const Query& query) const;
   /// Adds what the fronts of a list say; true as soon as that is enough.
   template <class Enough>
@@ -66,10 +142,8 @@ class CrackFronts {
   template <class Enough>
   Sight scan(const Query& query, double distance, const Enough& enough) const;
 
-  Vec3 origin_;
-  double radius_, bin_size_, cell_size_, filler_width_, reach_, near_, speed_, tan_ahead_, cos_parallel_;
-  std::array<int, 3> size_;
-  std::vector<std::vector<Front>> bins_;
+  double radius_, cell_size_, filler_width_, reach_, near_, speed_, tan_ahead_, cos_parallel_;
+  MaterialBins<std::vector<Front>> bins_;
   std::vector<Front> all_;  ///< by sequence number
 };
 

@@ -1,5 +1,6 @@
 #include "mpm/rankine.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Eigenvalues>
@@ -34,6 +35,25 @@ PrincipalStress principal_stress(const Mat3& cauchy_stress) {
   Eigen::SelfAdjointEigenSolver<Mat3> solver;
   solver.computeDirect(cauchy_stress);
   return {solver.eigenvalues(), solver.eigenvectors()};
+}
+
+LargestPrincipalStress largest_principal_stress(const Mat3& s) {
+  const double mean = s.trace() / 3;
+  Mat3 b = s - mean * Mat3::Identity();
+  const double p = std::sqrt(b.squaredNorm() / 6);
+  if (!(p > 1e-12 * std::abs(mean)) || !std::isfinite(p)) return {mean, Vec3::UnitX()};
+  b /= p;
+  // beta^3 - 3 beta = det b; beta = 2 cos(angle) in [1, 2].
+  const double beta = 2 * std::cos(std::acos(std::clamp(0.5 * b.determinant(), -1.0, 1.0)) / 3);
+  // (b - beta_2)(b - beta_3), the projector on the direction but for a factor.
+  const Mat3 projector = b.lazyProduct(b) + beta * b + (beta * beta - 3) * Mat3::Identity();
+  Eigen::Index column;
+  const double norm = projector.colwise().squaredNorm().maxCoeff(&column);
+  if (norm < 1e-12) {  // the two largest are equal: all directions across the third
+    const PrincipalStress all = principal_stress(s);
+    return {all.value[2], all.direction.col(2)};
+  }
+  return {mean + p * beta, projector.col(column) / std::sqrt(norm)};
 }
 
 Mat3 damaged_stress(const PrincipalStress& effective, double damage) {

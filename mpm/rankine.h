@@ -40,6 +40,14 @@ struct PrincipalStress {
 /// Symmetric eigen-decomposition; an SVD would return magnitudes and damage pure compression.
 PrincipalStress principal_stress(const Mat3& cauchy_stress);
 
+/// The largest principal stress and its direction, closed form: a few times faster than all three. The value is right
+/// to 1e-8 of the norm where two are nearly equal; the direction is then one of those that belong to both.
+struct LargestPrincipalStress {
+  double value;
+  Vec3 direction;
+};
+LargestPrincipalStress largest_principal_stress(const Mat3& cauchy_stress);
+
 /// Upper bound of the largest principal stress, mean + 2 sqrt(J2 / 3), without an eigen-decomposition.
 inline double principal_stress_bound(const Mat3& s) {
   const double mean = s.trace() / 3;

@@ -65,6 +65,26 @@ TEST(PrincipalStress, IsSortedOrthonormalAndRebuildsTheTensor) {
   }
 }
 
+TEST(LargestPrincipalStress, IsTheLastOfAllThree) {
+  for (std::uint64_t n = 0; n < 2000; ++n) {
+    const Mat3 s = random_stress(n);
+    const PrincipalStress all = principal_stress(s);
+    const LargestPrincipalStress largest = largest_principal_stress(s);
+    EXPECT_NEAR(largest.value, all.value[2], 1e-7 * s.norm());
+    EXPECT_NEAR(largest.direction.norm(), 1, 1e-12);
+    EXPECT_LT((s * largest.direction - largest.value * largest.direction).norm(), 1e-6 * s.norm());
+  }
+}
+
+TEST(LargestPrincipalStress, OfEqualValuesIsAnyDirectionAcrossTheThird) {
+  for (const Vec3& values : {Vec3(2, 2, -1), Vec3(2, 2, 2), Vec3(0, 0, 0), Vec3(5, 1, 1), Vec3(-1, -1, -3)}) {
+    const LargestPrincipalStress largest = largest_principal_stress(values.asDiagonal());
+    EXPECT_NEAR(largest.value, values.maxCoeff(), 1e-7);
+    EXPECT_NEAR(largest.direction.norm(), 1, 1e-12);
+    EXPECT_LT((values.asDiagonal() * largest.direction - largest.value * largest.direction).norm(), 1e-6);
+  }
+}
+
 TEST(PrincipalStressBound, IsNeverBelowTheLargest) {
   for (std::uint64_t n = 0; n < 2000; ++n) {
     const Mat3 s = random_stress(n);
