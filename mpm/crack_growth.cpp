@@ -88,6 +88,19 @@ void CrackGrowth::wake(const Candidate& front, Continuum& body) {
                                      });
 }
 
+void CrackGrowth::seed(int id, const Vec3& normal, Continuum& body) {
+  PointState state = body.point(id);
+  state.strength = state.threshold = law_.strength;
+  state.softening_slope = law_.slope;
+  state.damage = 1;
+  if (state.damage_time < 0) state.damage_time = 0;
+  body.set_point(id, state);
+  const Vec3 position = state.material_position;
+  // Cracks that are there have had all the time that a front needs.
+  fronts_.add(position, normal, -std::numeric_limits<double>::infinity());
+  wake({id, position, normal, 0, 0}, body);
+}
+
 Candidate CrackGrowth::candidate(int id, const Continuum& body) const {
   const Mat3 h = body.displacement_gradient(id);
   const auto stress = largest_principal_stress(body.elasticity().cauchy_stress(h, volume_change(h)));

@@ -16,6 +16,8 @@ class CrackGrowth {
   CrackGrowth(const Material& material, const SolveSettings& settings, const std::vector<Vec3>& points,
               Continuum& body);
 
+  /// A point of a crack that is there already: it has failed, pulls the crack ahead and shields beside it.
+  void seed(int id, const Vec3& normal, Continuum& body);
   /// After each advance(): starts the cracks that the rules allow.
   void grow(double time, Continuum& body);
 

@@ -21,7 +21,8 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"mpm", {"core", "geometry", "mpm"}},
     {"crack", {"core", "geometry", "crack"}},
     {"rigid", {"core", "geometry", "rigid"}},
-    {"pipeline", {"core", "geometry", "mpm", "crack", "rigid", "pipeline"}},
+    {"validation", {"core", "geometry", "mpm", "crack", "rigid", "validation"}},
+    {"pipeline", {"core", "geometry", "mpm", "crack", "rigid", "validation", "pipeline"}},
 };
 
 /// Which third-party header prefixes a module's .cpp files and detail headers may include.
@@ -32,6 +33,7 @@ const std::map<std::string, std::set<std::string>> libraries = {
     {"crack", {"voro++"}},
     {"rigid",
      {"btBulletDynamicsCommon.h", "btBulletCollisionCommon.h", "BulletCollision", "BulletDynamics", "LinearMath"}},
+    {"validation", {}},
     {"pipeline", {"CLI", "toml++", "nlohmann", "tiny_gltf.h", "tbb"}},
 };
 

@@ -1,0 +1,13 @@
+#pragma once
+/// The parts of the catalogue, a source file each.
+#include <vector>
+
+#include "validation/problem.h"
+
+namespace sunder::validation {
+
+std::vector<Problem> elasticity();  ///< A: transfers, elasticity, impact
+std::vector<Problem> damage();      ///< B1-B4: the damage law
+std::vector<Problem> fracture();    ///< B5 and on: cracks
+
+}  // namespace sunder::validation

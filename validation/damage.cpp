@@ -1,0 +1,7 @@
+#include "validation/catalogue.h"
+
+namespace sunder::validation {
+
+std::vector<Problem> damage() { return {}; }
+
+}  // namespace sunder::validation

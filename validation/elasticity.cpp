@@ -1,0 +1,7 @@
+#include "validation/catalogue.h"
+
+namespace sunder::validation {
+
+std::vector<Problem> elasticity() { return {}; }
+
+}  // namespace sunder::validation
