@@ -24,7 +24,7 @@ struct StepConstants {
   double time = 0, time_step = 0, cell_size = 0;
   double origin[3] = {0, 0, 0};  ///< of node (0, 0, 0) [m]
   double particle_volume = 0, particle_mass = 0;
-  double shear_modulus = 0, lame_lambda = 0, youngs_modulus = 0;
+  double shear_modulus = 0, lame_lambda = 0;
   double viscosity = 0;  ///< of undamaged material [Pa s]
 };
 
@@ -33,25 +33,36 @@ struct StepConstants {
 struct Stray {
   int cell[3];
   double weight[3][4];
+  double material_position[3];
   Node momentum, slope[3];
 };
 
-/// Strays are few and go through the grid one by one.
-struct StrayHandler {
+/// For what is rare.
+struct StepHandler {
   void* self = nullptr;
-  /// Sums over the stencil of weights[axis][node]: velocity, and velocity times (node - 1) along each axis.
-  void (*gather)(void* self, const int cell[3], const double weight[3][4], Node sums[4]) = nullptr;
+  /// Sums over the stencil of a stray: velocity, and velocity times (node - 1) along each axis.
+  void (*gather)(void* self, const Stray& stray, Node sums[4]) = nullptr;
   void (*scatter)(void* self, int block, const Stray& stray) = nullptr;
+  /// Bits of PointChunk::side of a point whose stencil begins at `cell`.
+  unsigned long long (*sides)(void* self, const int cell[3], const double material_position[3]) = nullptr;
+};
+
+/// Material on the two sides of a crack moves in two fields of its own. A node that has a crack plane belongs to both;
+/// points behind the plane are in the second field there. Blocks without such points have no second field.
+struct SecondField {
+  const Node* velocity[8] = {};  ///< as BlockPass::velocity; null where no node has a plane
+  Node* tile = nullptr;          ///< null: the block has one field
 };
 
 /// Input and output of the pass over one block.
 struct BlockPass {
   int block = 0;
   PointChunk* chunks = nullptr;
-  int count = 0;                  ///< points
-  int cell[3] = {0, 0, 0};        ///< lowest cell
-  const Node* velocity[8] = {};   ///< nodes of the block and of those above it in [x][y][z]; null: at rest
-  Node* tile = nullptr;           ///< momentum and mass from the points of the block
+  int count = 0;                 ///< points
+  int cell[3] = {0, 0, 0};       ///< lowest cell
+  const Node* velocity[8] = {};  ///< nodes of the block and of those above it in [x][y][z]; null: at rest
+  Node* tile = nullptr;          ///< momentum and mass from the points of the block
+  SecondField second;
   MotionChunk* motion = nullptr;  ///< given (start) or wanted (finish), by chunk
   int* candidates = nullptr;      ///< points without a crack above their threshold, as indices in the block
   int candidate_count = 0;
@@ -65,15 +76,19 @@ struct BlockPass {
 struct BlockSum {
   const Node* tile[8] = {};
   Node* nodes = nullptr;
+  const Node* second_tile[8] = {};
+  Node* second_nodes = nullptr;   ///< null: one field
+  const Node* normals = nullptr;  ///< unit normals of the crack planes, towards the first field; zero: no plane
+  double friction = 0;            ///< Coulomb's coefficient between the fields
 };
 
 /// The functions of one spline. A law other than the neo-Hookean one with Rankine damage is another set of them.
 struct StepKernels {
-  void (*step)(const StepConstants&, const StrayHandler&, BlockPass&);
+  void (*step)(const StepConstants&, const StepHandler&, BlockPass&);
   /// Motion given instead of gathered: no time passes.
-  void (*start)(const StepConstants&, const StrayHandler&, BlockPass&);
+  void (*start)(const StepConstants&, const StepHandler&, BlockPass&);
   /// Motion is gathered and displacements and deformation updated; nothing goes to the grid.
-  void (*finish)(const StepConstants&, const StrayHandler&, BlockPass&);
+  void (*finish)(const StepConstants&, const StepHandler&, BlockPass&);
   void (*sum)(const BlockSum&);
 };
 

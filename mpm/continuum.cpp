@@ -17,6 +17,8 @@ namespace {
 constexpr int points_per_stray = 512;
 /// Points sorted again before they are so far from their block that its neighbours no longer reach them [cells].
 constexpr int furthest_stray = 2;
+/// Cracks move with the body through the grid, by a small part of a cell in so many steps.
+constexpr int steps_between_divisions = 64;
 
 int floor_div(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
 
@@ -71,6 +73,8 @@ void write(const PointState& p, int id, int lane, PointChunk& c) {
   c.damage[lane] = p.damage;
   c.damage_time[lane] = p.damage_time;
   c.dissipated[lane] = p.dissipated;
+  c.side[lane] = 0;
+  c.side_corner[lane] = -1;
   c.id[lane] = id;
 }
 
@@ -78,6 +82,12 @@ PointChunk empty_chunk() {
   PointChunk chunk;
   for (int lane = 0; lane < chunk_size; ++lane) write(PointState{}, -1, lane, chunk);
   return chunk;
+}
+
+Box box_of(const std::vector<Vec3>& points) {
+  Box box;
+  for (const Vec3& x : points) box.extend(x);
+  return box;
 }
 
 std::size_t chunks_for(int count) { return static_cast<std::size_t>((count + chunk_size - 1) / chunk_size); }
@@ -90,7 +100,8 @@ Continuum::Continuum(const std::vector<Vec3>& points, double particle_volume, co
       elasticity_(material),
       kernels_(step_kernels(settings.spline, settings.instructions)),
       chunks_(chunks_for(static_cast<int>(points.size())), empty_chunk()),
-      slot_(points.size()) {
+      slot_(points.size()),
+      faces_(box_of(points), settings.cell_size) {
   constants_.time_step = settings.time_step;
   constants_.cell_size = settings.cell_size;
   // One cell below the anchor, so that a thin body whose lowest point is there fits into one layer of blocks.
@@ -99,7 +110,6 @@ Continuum::Continuum(const std::vector<Vec3>& points, double particle_volume, co
   constants_.particle_mass = material.density * particle_volume;
   constants_.shear_modulus = material.shear_modulus();
   constants_.lame_lambda = material.lame_lambda();
-  constants_.youngs_modulus = material.youngs_modulus;
   constants_.viscosity = settings.viscosity;
   for (std::size_t p = 0; p < points.size(); ++p) {
     slot_[p] = static_cast<int>(p);
@@ -146,6 +156,11 @@ Mat3 Continuum::displacement_gradient(int id) const {
   Mat3 h;
   read(chunks_[lane_of(slot).chunk].displacement_gradient, lane_of(slot).lane, h);
   return h;
+}
+
+double Continuum::damage(int id) const {
+  const int slot = slot_[static_cast<std::size_t>(id)];
+  return slot < 0 ? 1 : chunks_[lane_of(slot).chunk].damage[lane_of(slot).lane];
 }
 
 // ---- grid -------------------------------------------------------------------------------------------------------
@@ -206,7 +221,7 @@ void Continuum::take_out_escaped() {
       if (state.damage_time < 0) state.damage_time = constants_.time;
       const Stray at = stencil(id);
       Node sums[4];
-      gather(at.cell, at.weight, sums);
+      gather(at, sums);
       escaped_.push_back({state, head(sums[0]), constants_.time});
       slot_[static_cast<std::size_t>(id)] = -static_cast<int>(escaped_.size());
       chunk.id[lane] = -1;
@@ -257,13 +272,14 @@ void Continuum::sort() {
 
   const auto old_blocks = std::move(blocks_);
   const auto old_nodes = std::move(nodes_);
+  const auto old_second_nodes = std::move(second_nodes_);
   blocks_.clear();
   nodes_.clear();
   lay_table(holding);
   for (const auto& block : holding) make_block(block);
   holding_ = static_cast<int>(holding.size());
   for (const auto& block : holding) make_blocks_above(block);
-  carry_velocities(old_blocks, old_nodes);
+  carry_velocities(old_blocks, old_nodes, old_second_nodes);
 
   std::vector<PointChunk> sorted;
   sorted.reserve(chunks_.size() + holding.size());
@@ -288,13 +304,25 @@ void Continuum::sort() {
   candidate_slots_.resize(chunks_.size() * chunk_size);
   held_nodes_blocks_ = 0;
   sorted_ = true;
+  if (cracked_) divide(faces_);
 }
 
-void Continuum::carry_velocities(const std::vector<Block>& blocks, const std::vector<Node>& nodes) {
-  for (std::size_t b = 0; b < blocks.size(); ++b)
-    if (const int now = find_block(blocks[b].at); now >= 0)
-      std::copy_n(nodes.begin() + static_cast<std::ptrdiff_t>(b) * block_nodes, block_nodes,
-                  nodes_.begin() + static_cast<std::ptrdiff_t>(now) * block_nodes);
+void Continuum::carry_velocities(const std::vector<Block>& blocks, const std::vector<Node>& nodes,
+                                 const std::vector<Node>& second_nodes) {
+  second_nodes_.clear();
+  second_tiles_.clear();
+  normals_.clear();
+  plane_offset_.clear();
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    const int now = find_block(blocks[b].at);
+    if (now < 0) continue;
+    std::copy_n(nodes.begin() + static_cast<std::ptrdiff_t>(b) * block_nodes, block_nodes,
+                nodes_.begin() + static_cast<std::ptrdiff_t>(now) * block_nodes);
+    if (blocks[b].planes < 0) continue;
+    add_planes(now);
+    std::copy_n(second_nodes.begin() + static_cast<std::ptrdiff_t>(blocks[b].planes) * block_nodes, block_nodes,
+                second_nodes_.end() - block_nodes);
+  }
 }
 
 /// Stencil of a point where it is now, without momentum.
@@ -305,6 +333,7 @@ Stray Continuum::stencil(int id) const {
   read(chunks_[at.chunk].displacement, at.lane, u);
   Stray s{};
   for (int a = 0; a < 3; ++a) {
+    s.material_position[a] = x[a];
     const double cells = (x[a] - constants_.origin[a] + u[a]) / constants_.cell_size;
     const double low = std::floor(cells - stencil_shift(settings_.spline)), o = cells - low - 1;
     s.cell[a] = static_cast<int>(low);
@@ -313,40 +342,65 @@ Stray Continuum::stencil(int id) const {
   return s;
 }
 
-/// See StrayHandler.
-void Continuum::gather(const int cell[3], const double weight[3][4], Node sums[4]) const {
+/// See StepHandler.
+void Continuum::gather(const Stray& stray, Node sums[4]) const {
   for (int k = 0; k < 4; ++k) sums[k] = Node{};
   const int width = stencil_width(settings_.spline);
+  const Vec3 material(stray.material_position[0], stray.material_position[1], stray.material_position[2]);
   for (int i = 0; i < width; ++i)
     for (int j = 0; j < width; ++j)
       for (int k = 0; k < width; ++k) {
-        const std::array<int, 3> at = {cell[0] + i, cell[1] + j, cell[2] + k};
-        std::array<int, 3> block;
-        int local = 0;
-        for (std::size_t a = 0; a < 3; ++a) {
-          block[a] = floor_div(at[a], block_edge);
-          local = local * block_edge + at[a] - block[a] * block_edge;
-        }
-        const int b = find_block(block);
+        const auto [b, local] = find_node({stray.cell[0] + i, stray.cell[1] + j, stray.cell[2] + k});
         if (b < 0) continue;
-        const Node& node = nodes_[static_cast<std::size_t>(b) * block_nodes + static_cast<std::size_t>(local)];
-        const double w = weight[0][i] * weight[1][j] * weight[2][k];
+        const bool second = cracked_ && behind(b, local, material);
+        const int block = second ? blocks_[static_cast<std::size_t>(b)].planes : b;
+        const Node& node =
+            (second ? second_nodes_
+                    : nodes_)[static_cast<std::size_t>(block) * block_nodes + static_cast<std::size_t>(local)];
+        const double w = stray.weight[0][i] * stray.weight[1][j] * stray.weight[2][k];
         const double factor[4] = {w, w * (i - 1), w * (j - 1), w * (k - 1)};
         for (int s = 0; s < 4; ++s)
           for (int c = 0; c < 3; ++c) sums[s].value[c] += factor[s] * node.value[c];
       }
 }
 
-StrayHandler Continuum::stray_handler() {
-  StrayHandler handler;
+StepHandler Continuum::handler() {
+  StepHandler handler;
   handler.self = this;
-  handler.gather = [](void* self, const int cell[3], const double weight[3][4], Node sums[4]) {
-    static_cast<const Continuum*>(self)->gather(cell, weight, sums);
+  handler.gather = [](void* self, const Stray& stray, Node sums[4]) {
+    static_cast<const Continuum*>(self)->gather(stray, sums);
   };
   handler.scatter = [](void* self, int block, const Stray& stray) {
     static_cast<Continuum*>(self)->strays_[static_cast<std::size_t>(block)].push_back(stray);
   };
+  handler.sides = [](void* self, const int cell[3], const double x[3]) {
+    return static_cast<const Continuum*>(self)->sides(cell, Vec3(x[0], x[1], x[2]));
+  };
   return handler;
+}
+
+/// Block and index in it of a node; -1: no such block.
+std::pair<int, int> Continuum::find_node(const std::array<int, 3>& at) const {
+  std::array<int, 3> block;
+  int local = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    block[a] = floor_div(at[a], block_edge);
+    local = local * block_edge + at[a] - block[a] * block_edge;
+  }
+  return {find_block(block), local};
+}
+
+Node* Continuum::first_tile(int block) {
+  const std::size_t size = static_cast<std::size_t>(tile_nodes(settings_.spline));
+  Block& home = blocks_[static_cast<std::size_t>(block)];
+  if (home.tile < 0) {
+    home.tile = static_cast<int>(tiles_.size() / size);
+    tiles_.resize(tiles_.size() + size);
+  }
+  Node* tile = tiles_.data() + static_cast<std::size_t>(home.tile) * size;
+  if (!home.tile_live) std::fill_n(tile, size, Node{});
+  home.tile_live = true;
+  return tile;
 }
 
 /// Adds to the tile of the block that the stencil begins in.
@@ -355,22 +409,16 @@ void Continuum::scatter(const Stray& stray) {
   for (std::size_t a = 0; a < 3; ++a) block[a] = floor_div(stray.cell[a], block_edge);
   const int b = make_block(block);
   make_blocks_above(block);
-  const std::size_t tile_size = static_cast<std::size_t>(tile_nodes(settings_.spline));
-  Block& home = blocks_[static_cast<std::size_t>(b)];
-  if (home.tile < 0) {
-    home.tile = static_cast<int>(tiles_.size() / tile_size);
-    tiles_.resize(tiles_.size() + tile_size);
-  }
-  Node* tile = tiles_.data() + static_cast<std::size_t>(home.tile) * tile_size;
-  if (!home.tile_live) std::fill_n(tile, tile_size, Node{});
-  home.tile_live = true;
+  const Vec3 material(stray.material_position[0], stray.material_position[1], stray.material_position[2]);
+  unsigned long long side = cracked_ ? sides(stray.cell, material) : 0;
+  Node* const tiles[2] = {first_tile(b), side ? second_tile(b) : nullptr};
   const int width = stencil_width(settings_.spline), edge = tile_edge(settings_.spline);
   for (int i = 0; i < width; ++i)
     for (int j = 0; j < width; ++j)
-      for (int k = 0; k < width; ++k) {
+      for (int k = 0; k < width; ++k, side >>= 1) {
         const double w = stray.weight[0][i] * stray.weight[1][j] * stray.weight[2][k];
         const auto local = [&](std::size_t a, int n) { return stray.cell[a] - block[a] * block_edge + n; };
-        Node& node = tile[(local(0, i) * edge + local(1, j)) * edge + local(2, k)];
+        Node& node = tiles[side & 1][(local(0, i) * edge + local(1, j)) * edge + local(2, k)];
         for (int c = 0; c < 4; ++c)
           node.value[c] += w * (stray.momentum.value[c] + (i - 1) * stray.slope[0].value[c] +
                                 (j - 1) * stray.slope[1].value[c] + (k - 1) * stray.slope[2].value[c]);
@@ -379,11 +427,11 @@ void Continuum::scatter(const Stray& stray) {
 
 // ---- time step --------------------------------------------------------------------------------------------------
 
-void Continuum::run(void (*pass)(const StepConstants&, const StrayHandler&, BlockPass&),
+void Continuum::run(void (*pass)(const StepConstants&, const StepHandler&, BlockPass&),
                     std::vector<MotionChunk>* motion) {
-  const StrayHandler handler = stray_handler();
+  const StepHandler rare = handler();
   const std::size_t tile_size = static_cast<std::size_t>(tile_nodes(settings_.spline));
-  for (std::size_t b = static_cast<std::size_t>(holding_); b < blocks_.size(); ++b) blocks_[b].tile_live = false;
+  for (Block& block : blocks_) block.tile_live = block.second_live = false;
   tbb::parallel_for(tbb::blocked_range<int>(0, holding_), [&](const tbb::blocked_range<int>& range) {
     for (int b = range.begin(); b < range.end(); ++b) {
       Block& block = blocks_[static_cast<std::size_t>(b)];
@@ -399,10 +447,20 @@ void Continuum::run(void (*pass)(const StepConstants&, const StrayHandler&, Bloc
         work.velocity[n] = above < 0 ? nullptr : nodes_.data() + static_cast<std::size_t>(above) * block_nodes;
       }
       work.tile = tiles_.data() + static_cast<std::size_t>(block.tile) * tile_size;
+      if (block.second_tile >= 0) {
+        for (int n = 0; n < 8; ++n) {
+          const int above = find_block(plus(block.at, n >> 2, n >> 1 & 1, n & 1));
+          const int planes = above < 0 ? -1 : blocks_[static_cast<std::size_t>(above)].planes;
+          if (planes >= 0)
+            work.second.velocity[n] = second_nodes_.data() + static_cast<std::size_t>(planes) * block_nodes;
+        }
+        work.second.tile = second_tiles_.data() + static_cast<std::size_t>(block.second_tile) * tile_size;
+        block.second_live = true;
+      }
       work.motion = motion ? motion->data() + first : nullptr;
       work.candidates = candidate_slots_.data() + first * chunk_size;
       strays_[static_cast<std::size_t>(b)].clear();
-      pass(constants_, handler, work);
+      pass(constants_, rare, work);
       block.tile_live = true;
     }
   });
@@ -451,7 +509,10 @@ void Continuum::start(const std::vector<Motion>& motion) {
 }
 
 void Continuum::advance(double time) {
-  if (!sorted_) sort();
+  if (!sorted_)
+    sort();
+  else if (cracked_ && ++steps_since_division_ >= steps_between_divisions)
+    divide(faces_);
   constants_.time = time;
   run(kernels_.step, nullptr);
 }
@@ -491,9 +552,17 @@ void Continuum::update_grid() {
           sum.nodes = nodes_.data() + b * block_nodes;
           for (int n = 0; n < 8; ++n) {
             const int below = find_block(plus(blocks_[b].at, -(n >> 2), -(n >> 1 & 1), -(n & 1)));
-            if (below < 0 || !blocks_[static_cast<std::size_t>(below)].tile_live) continue;
-            sum.tile[n] =
-                tiles_.data() + static_cast<std::size_t>(blocks_[static_cast<std::size_t>(below)].tile) * tile_size;
+            if (below < 0) continue;
+            const Block& from = blocks_[static_cast<std::size_t>(below)];
+            if (from.tile_live) sum.tile[n] = tiles_.data() + static_cast<std::size_t>(from.tile) * tile_size;
+            if (from.second_live)
+              sum.second_tile[n] = second_tiles_.data() + static_cast<std::size_t>(from.second_tile) * tile_size;
+          }
+          if (blocks_[b].planes >= 0) {
+            const std::size_t first = static_cast<std::size_t>(blocks_[b].planes) * block_nodes;
+            sum.second_nodes = second_nodes_.data() + first;
+            sum.normals = normals_.data() + first;
+            sum.friction = friction_;
           }
           kernels_.sum(sum);
         }
@@ -526,13 +595,17 @@ void Continuum::find_held_nodes() {
 void Continuum::hold_nodes() {
   if (held_nodes_blocks_ != blocks_.size()) find_held_nodes();
   for (const HeldNode& at : held_nodes_) {
-    Node& node = nodes_[static_cast<std::size_t>(at.node)];
     const HeldRegion& region = held_[static_cast<std::size_t>(at.region)];
-    for (int a = 0; a < 3; ++a) {
-      if (!region.axes[static_cast<std::size_t>(a)]) continue;
-      held_impulses_[static_cast<std::size_t>(at.region)][a] += node.value[3] * (region.velocity[a] - node.value[a]);
-      node.value[a] = region.velocity[a];
-    }
+    const auto hold = [&](Node& node) {
+      for (int a = 0; a < 3; ++a) {
+        if (!region.axes[static_cast<std::size_t>(a)]) continue;
+        held_impulses_[static_cast<std::size_t>(at.region)][a] += node.value[3] * (region.velocity[a] - node.value[a]);
+        node.value[a] = region.velocity[a];
+      }
+    };
+    hold(nodes_[static_cast<std::size_t>(at.node)]);
+    const int planes = blocks_[static_cast<std::size_t>(at.node / block_nodes)].planes;
+    if (planes >= 0) hold(second_nodes_[static_cast<std::size_t>(planes * block_nodes + at.node % block_nodes)]);
   }
 }
 
@@ -615,8 +688,9 @@ StoredEnergy Continuum::energy(const std::vector<Motion>& motion) const {
 
 std::size_t Continuum::memory() const {
   return chunks_.size() * sizeof(PointChunk) + slot_.size() * sizeof(int) + nodes_.size() * sizeof(Node) +
-         tiles_.size() * sizeof(Node) + table_.size() * sizeof(int) + blocks_.size() * sizeof(Block) +
-         candidate_slots_.size() * sizeof(int) + passes_.size() * sizeof(BlockPass);
+         (tiles_.size() + second_tiles_.size() + second_nodes_.size() + normals_.size()) * sizeof(Node) +
+         table_.size() * sizeof(int) + blocks_.size() * sizeof(Block) + candidate_slots_.size() * sizeof(int) +
+         passes_.size() * sizeof(BlockPass);
 }
 
 }  // namespace sunder::mpm

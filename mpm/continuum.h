@@ -4,11 +4,13 @@
 /// cracks may start is the business of others.
 #include <array>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "core/types.h"
 #include "mpm/block_pass.h"
 #include "mpm/material.h"
+#include "mpm/material_bins.h"
 #include "mpm/neo_hookean.h"
 
 namespace sunder::mpm {
@@ -47,6 +49,12 @@ struct HeldRegion {
   std::array<bool, 3> axes = {true, true, true};
 };
 
+/// A piece of a crack's mid-surface, in material coordinates.
+struct CrackFace {
+  Vec3 position;  ///< [m]
+  Vec3 normal;    ///< unit
+};
+
 /// Energies of all points [J].
 struct StoredEnergy {
   double kinetic = 0;                   ///< with the affine part, m moment h^2 |C|^2 / 2
@@ -69,6 +77,7 @@ class Continuum {
   Vec3 displacement(int id) const;
   Vec3 material_position(int id) const;
   Mat3 displacement_gradient(int id) const;
+  double damage(int id) const;
 
   /// Before the first step; without it the body starts at rest. Continue with update_grid().
   void start(const std::vector<Motion>& motion);
@@ -86,6 +95,12 @@ class Continuum {
   void hold(std::vector<HeldRegion> regions);
   /// Impulse that each held region gave to the body so far [N s].
   const std::vector<Vec3>& held_impulses() const { return held_impulses_; }
+
+  /// From now on material on the two sides of these faces too moves in two velocity fields that touch but do not hold
+  /// each other. A node takes the plane of its nearest face, when that is the closest point of the crack and not beyond
+  /// its rim; particles behind the plane are in the second field there. `friction`: Coulomb's coefficient between the
+  /// fields. Between update_grid() and advance().
+  void open(const std::vector<CrackFace>& faces, double friction);
 
   /// Points without a crack whose largest principal stress exceeded their threshold in the last advance().
   const std::vector<int>& candidates() const { return candidates_; }
@@ -121,6 +136,9 @@ class Continuum {
     int first_chunk = 0, count = 0;
     int tile = -1;
     bool tile_live = false;  ///< the tile holds momentum of this step
+    int planes = -1;         ///< index of its crack planes and second nodes; -1: one field
+    int second_tile = -1;
+    bool second_live = false;
   };
   struct Escaped {
     PointState state;
@@ -131,20 +149,35 @@ class Continuum {
   void sort();
   void take_out_escaped();
   void lay_table(const std::vector<std::array<int, 3>>& blocks);
-  void carry_velocities(const std::vector<Block>& blocks, const std::vector<Node>& nodes);
+  void carry_velocities(const std::vector<Block>& blocks, const std::vector<Node>& nodes,
+                        const std::vector<Node>& second_nodes);
+  // Two fields: continuum_cracks.cpp.
+  using FaceBins = MaterialBins<std::vector<CrackFace>>;
+  void divide(const FaceBins& near);
+  void find_planes(const FaceBins& near, std::vector<bool>& changed);
+  void find_sides(const std::vector<bool>& changed);
+  void add_planes(int block);
+  Node plane_at(const Vec3& material_position) const;
+  bool faces_near(const FaceBins& faces, const Vec3& low, const Vec3& high) const;
+  Vec3 mean_displacement(const Block& block) const;
+  unsigned long long sides(const int cell[3], const Vec3& material_position) const;
+  bool behind(int block, int local, const Vec3& material_position) const;
+  Node* second_tile(int block);
+  Node* first_tile(int block);
+  std::pair<int, int> find_node(const std::array<int, 3>& at) const;
   std::array<int, 3> block_of(const Vec3& position) const;
   int table_index(const std::array<int, 3>& block) const;
   int find_block(const std::array<int, 3>& block) const;
   int make_block(const std::array<int, 3>& block);
   void make_blocks_above(const std::array<int, 3>& block);
   void find_held_nodes();
-  void run(void (*pass)(const StepConstants&, const StrayHandler&, BlockPass&), std::vector<MotionChunk>* motion);
+  void run(void (*pass)(const StepConstants&, const StepHandler&, BlockPass&), std::vector<MotionChunk>* motion);
   void scatter(const Stray& stray);
   void hold_nodes();
   void require_finite() const;
   Stray stencil(int id) const;
-  void gather(const int cell[3], const double weight[3][4], Node sums[4]) const;
-  StrayHandler stray_handler();
+  void gather(const Stray& stray, Node sums[4]) const;
+  StepHandler handler();
   void collect();
 
   const ContinuumSettings settings_;
@@ -161,6 +194,16 @@ class Continuum {
   std::vector<Block> blocks_;
   int holding_ = 0;
   std::vector<Node> nodes_, tiles_;
+
+  // The second field, in blocks with crack planes only.
+  FaceBins faces_;
+  double friction_ = 0;
+  bool cracked_ = false;
+  int steps_since_division_ = 0;
+  std::vector<Node> second_nodes_, second_tiles_;
+  std::vector<Node> normals_;         ///< unit normal of the crack plane of a node; zero: none
+  std::vector<double> plane_offset_;  ///< of the plane along its normal [m]
+
   std::vector<std::vector<Stray>> strays_;  ///< by block
   std::vector<BlockPass> passes_;
   std::vector<int> candidate_slots_, candidates_;

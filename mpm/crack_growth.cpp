@@ -98,7 +98,19 @@ void CrackGrowth::seed(int id, const Vec3& normal, Continuum& body) {
   const Vec3 position = state.material_position;
   // Cracks that are there have had all the time that a front needs.
   fronts_.add(position, normal, -std::numeric_limits<double>::infinity());
+  closed_.emplace_back(id, normal);
   wake({id, position, normal, 0, 0}, body);
+}
+
+std::vector<CrackFace> CrackGrowth::new_faces(const Continuum& body) {
+  std::vector<CrackFace> faces;
+  std::erase_if(closed_, [&](const auto& front) {
+    const auto& [id, normal] = front;
+    if (body.damage(id) < failed_damage) return false;
+    faces.push_back({body.material_position(id), normal});
+    return true;
+  });
+  return faces;
 }
 
 Candidate CrackGrowth::candidate(int id, const Continuum& body) const {
@@ -141,6 +153,7 @@ void CrackGrowth::decide(const std::vector<Asked>& asked, double time, Continuum
     if (verdict == Verdict::nucleate) ++nuclei_;
     if (verdict == Verdict::filler) continue;
     fronts_.add(c.position, c.normal, time);
+    closed_.emplace_back(c.particle, c.normal);
     wake(c, body);
   }
 }

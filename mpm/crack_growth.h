@@ -21,6 +21,9 @@ class CrackGrowth {
   /// After each advance(): starts the cracks that the rules allow.
   void grow(double time, Continuum& body);
 
+  /// The mid-surface of cracks that opened since this was last asked: fronts that failed. A local law has none.
+  std::vector<CrackFace> new_faces(const Continuum& body);
+
   /// The law at crack fronts (front) or everywhere but for scatter (local).
   const Softening& law() const { return law_; }
   long nuclei() const { return nuclei_; }  ///< cracks that started in virgin material
@@ -48,6 +51,7 @@ class CrackGrowth {
   std::vector<Memory> memory_;
   long step_ = 0;
   CrackFronts fronts_;
+  std::vector<std::pair<int, Vec3>> closed_;  ///< fronts that have not failed yet, with the normal of the crack there
   struct Neighbourhood {
     std::vector<int> points;
     bool awake = false;  ///< a front is within its reach; before, only the nucleation strength of the points matters

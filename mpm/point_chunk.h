@@ -17,7 +17,9 @@ struct alignas(64) PointChunk {
   double softening_slope[chunk_size];  ///< H of the softening law in force
   double damage_time[chunk_size];      ///< when c reached failed_damage [s]; -1: never
   double dissipated[chunk_size];       ///< by damage, per volume [J/m^3]
-  int id[chunk_size];                  ///< index in the points of the caller; -1: nobody
+  unsigned long long side[chunk_size];  ///< bit n: behind the crack plane of node n of the stencil, x slowest
+  int side_corner[chunk_size];          ///< lowest node of the stencil, in its block, that `side` belongs to
+  int id[chunk_size];                   ///< index in the points of the caller; -1: nobody
 };
 
 /// What the points of a chunk do, where it is given or asked for: during a step neither is ever stored.

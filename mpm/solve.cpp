@@ -13,6 +13,8 @@ namespace sunder::mpm {
 namespace {
 
 constexpr double cracked = 0.95;
+/// A front crosses two cells in so many steps.
+constexpr long steps_between_openings = 16;
 
 void require(bool holds, const std::string& what) {
   if (!holds) throw Error(ErrorKind::usage, what);
@@ -124,6 +126,7 @@ class Solver {
  private:
   void follow();
   void push();
+  void open_cracks();
   void book_work();
 
   const SolveInput& input_;
@@ -138,7 +141,7 @@ class Solver {
   long escapes_ = 0;
   Vec3 impulse_ = Vec3::Zero(), travel_ = Vec3::Zero();  ///< of the body as a whole
   double time_ = 0, last_failure_ = 0, contact_duration_ = 0, latest_end_ = 0, work_ = 0, impact_energy_ = 0;
-  long steps_ = 0, failed_ = 0;
+  long steps_ = 0;
 };
 
 Solver::Solver(const SolveInput& input, const SolveSettings& settings)
@@ -183,6 +186,11 @@ void Solver::push() {
   if (input_.held.empty()) travel_ += scales_.time_step / body_mass_ * impulse_;
 }
 
+void Solver::open_cracks() {
+  if (settings_.two_fields && steps_ % steps_between_openings == 0)
+    body_.open(cracks_.new_faces(body_), settings_.crack_friction);
+}
+
 /// Work of the loads less the energy of the body's translation, which a held body does not have.
 void Solver::book_work() {
   double work = input_.held.empty() ? -0.5 * impulse_.squaredNorm() / body_mass_ : 0;
@@ -201,6 +209,7 @@ void Solver::step() {
   book_work();
   push();
   body_.update_grid();
+  open_cracks();
   time_ += scales_.time_step;
   ++steps_;
 }

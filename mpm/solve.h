@@ -63,6 +63,8 @@ struct SolveSettings {
   double most_damaged_share = 1;   ///< stop when this share of the particles is damaged
   long most_steps = 10000000;      ///< stop after so many steps whatever happens
   Spline spline = Spline::quadratic;
+  bool two_fields = false;      ///< material on the two sides of a crack front's path moves apart (front rules only)
+  double crack_friction = 0.3;  ///< Coulomb's coefficient between them
   std::uint64_t seed = 1;
 };
 

@@ -60,23 +60,39 @@ struct alignas(64) Place {
   int corner(int lane) const { return (base[0][lane] * edge + base[1][lane]) * edge + base[2][lane]; }
 };
 
-/// Sums over the stencil of w v and of w v (node - 1) along x, y, z; z first, so that every sum is done once.
+/// The nodes of a stencil in one field.
 template <class S>
-inline void gather(const Place<S>& place, int lane, const Quad* tile, Quad& v, Quad& sx, Quad& sy, Quad& sz) {
-  constexpr int n = Place<S>::nodes, edge = Place<S>::edge;
+struct OneField {
+  Quad* corner;
+  Quad& node(int i, int j, int k) const { return corner[(i * Place<S>::edge + j) * Place<S>::edge + k]; }
+};
+
+/// The nodes of a stencil that lies in two fields: bit n of `side` tells which one node n belongs to.
+template <class S>
+struct TwoFields {
+  Quad* corner[2];
+  unsigned long long side;
+  Quad& node(int i, int j, int k) const {
+    constexpr int n = Place<S>::nodes;
+    return corner[side >> ((i * n + j) * n + k) & 1][(i * Place<S>::edge + j) * Place<S>::edge + k];
+  }
+};
+
+/// Sums over the stencil of w v and of w v (node - 1) along x, y, z; z first, so that every sum is done once.
+template <class S, class Field>
+inline void gather(const Place<S>& place, int lane, const Field& field, Quad& v, Quad& sx, Quad& sy, Quad& sz) {
+  constexpr int n = Place<S>::nodes;
   const auto w = [&](int axis, int node) { return place.weight[axis][node][lane]; };
-  const Quad* corner = tile + place.corner(lane);
   v = sx = sy = sz = Quad{};
 #pragma GCC unroll 4
   for (int i = 0; i < n; ++i) {
     Quad plane = {}, along_y = {}, along_z = {};
 #pragma GCC unroll 4
     for (int j = 0; j < n; ++j) {
-      const Quad* row = corner + (i * edge + j) * edge;
-      const Quad first = w(2, 0) * row[0], third = w(2, 2) * row[2];
-      Quad line = first + third + w(2, 1) * row[1], moment = third - first;
+      const Quad first = w(2, 0) * field.node(i, j, 0), third = w(2, 2) * field.node(i, j, 2);
+      Quad line = first + third + w(2, 1) * field.node(i, j, 1), moment = third - first;
       if constexpr (n == 4) {
-        const Quad fourth = w(2, 3) * row[3];
+        const Quad fourth = w(2, 3) * field.node(i, j, 3);
         line += fourth;
         moment += 2.0 * fourth;
       }
@@ -94,21 +110,19 @@ inline void gather(const Place<S>& place, int lane, const Quad* tile, Quad& v, Q
 }
 
 /// Adds weight * (momentum + slopes * (node - 1)) to the stencil.
-template <class S>
-inline void scatter(const Place<S>& place, int lane, Quad momentum, Quad bx, Quad by, Quad bz, Quad* tile) {
-  constexpr int n = Place<S>::nodes, edge = Place<S>::edge;
+template <class S, class Field>
+inline void scatter(const Place<S>& place, int lane, Quad momentum, Quad bx, Quad by, Quad bz, const Field& field) {
+  constexpr int n = Place<S>::nodes;
   const auto w = [&](int axis, int node) { return place.weight[axis][node][lane]; };
-  Quad* corner = tile + place.corner(lane);
 #pragma GCC unroll 4
   for (int i = 0; i < n; ++i) {
     const Quad plane = w(0, i) * (i == 1 ? momentum : momentum + (i - 1.0) * bx);
     const Quad plane_y = w(0, i) * by, plane_z = w(0, i) * bz;
 #pragma GCC unroll 4
     for (int j = 0; j < n; ++j) {
-      Quad* row = corner + (i * edge + j) * edge;
       const Quad line = w(1, j) * (j == 1 ? plane : plane + (j - 1.0) * plane_y), line_z = w(1, j) * plane_z;
 #pragma GCC unroll 4
-      for (int k = 0; k < n; ++k) row[k] += w(2, k) * (k == 1 ? line : line + (k - 1.0) * line_z);
+      for (int k = 0; k < n; ++k) field.node(i, j, k) += w(2, k) * (k == 1 ? line : line + (k - 1.0) * line_z);
     }
   }
 }
@@ -117,11 +131,13 @@ inline void scatter(const Place<S>& place, int lane, Quad momentum, Quad bx, Qua
 template <class S, Stage stage>
 class Group {
  public:
-  /// `velocity`: the tile of velocities that the stencils of the block reach.
-  Group(const StepConstants& constants, const StrayHandler& strays, const Quad* velocity, BlockPass& pass, int first)
+  /// `velocity`: the tiles of velocities that the stencils of the block reach; the second is null without a second
+  /// field.
+  Group(const StepConstants& constants, const StepHandler& handler, Quad* const velocity[2], BlockPass& pass, int first)
       : c_(constants),
-        strays_(strays),
-        tile_(velocity),
+        handler_(handler),
+        velocity_tiles_{velocity[0], velocity[1]},
+        momentum_tiles_{reinterpret_cast<Quad*>(pass.tile), reinterpret_cast<Quad*>(pass.second.tile)},
         pass_(pass),
         chunk_(pass.chunks[first / chunk_size]),
         motion_(pass.motion ? pass.motion + first / chunk_size : nullptr),
@@ -165,10 +181,16 @@ class Group {
   void gather_motion() {
     Quad sums[4][width] = {};
     for (int n = 0; n < count_; ++n) {
-      if (place_.at_home(n))
-        gather<S>(place_, n, tile_, sums[0][n], sums[1][n], sums[2][n], sums[3][n]);
-      else
+      if (!place_.at_home(n)) {
         gather_stray(n, sums);
+      } else if (const auto side = side_of(n)) {
+        const int corner = place_.corner(n);
+        const TwoFields<S> fields{{velocity_tiles_[0] + corner, velocity_tiles_[1] + corner}, side};
+        gather<S>(place_, n, fields, sums[0][n], sums[1][n], sums[2][n], sums[3][n]);
+      } else {
+        const OneField<S> field{velocity_tiles_[0] + place_.corner(n)};
+        gather<S>(place_, n, field, sums[0][n], sums[1][n], sums[2][n], sums[3][n]);
+      }
     }
     from_quads(sums[0], velocity_[0], velocity_[1], velocity_[2]);
     const double factor = 1 / (spline_moment(S::name) * c_.cell_size);
@@ -228,7 +250,7 @@ class Group {
     Lanes damage = load(chunk_.damage + lane_);
     if (any((damage > 0.0) | may_exceed(stress, load(chunk_.threshold + lane_)))) {
       const Principal principal(stress);
-      soften(principal.value(2), damage);
+      soften(principal, damage);
       if (any(damage > 0.0)) {
         const Symmetric tension = principal.tension(stress);
         stress = {stress.xx - damage * tension.xx, stress.yy - damage * tension.yy, stress.zz - damage * tension.zz,
@@ -239,7 +261,8 @@ class Group {
     return stress;
   }
 
-  void soften(Lanes largest, Lanes& damage) {
+  void soften(const Principal& principal, Lanes& damage) {
+    const Lanes largest = principal.value(2);
     const Lanes threshold = load(chunk_.threshold + lane_), strength = load(chunk_.strength + lane_);
     const Mask above = largest > threshold;
     if (!any(above)) return;
@@ -251,10 +274,10 @@ class Group {
     if (!any(grows)) return;
     const Lanes reached = min((1.0 + load(chunk_.softening_slope + lane_)) * (1.0 - strength / largest), all(1.0));
     const Lanes after = grows & (reached > damage) ? reached : damage;
-    // Dissipation density is the integral of the driving energy r^2 / 2E over dc.
+    // Damage grows at the strain of the end of the step: what it releases is the tensile energy stored there.
     double* dissipated = chunk_.dissipated + lane_;
-    const Lanes driving = (0.25 / c_.youngs_modulus) * (threshold * threshold + largest * largest);
-    store(dissipated, load(dissipated) + (grows ? (after - damage) * driving : Lanes{}));
+    const Lanes stored = principal.tensile_energy(c_.shear_modulus, c_.lame_lambda);
+    store(dissipated, load(dissipated) + (grows ? (after - damage) * stored : Lanes{}));
     damage = after;
     store(chunk_.damage + lane_, damage);
     store(chunk_.threshold + lane_, grows ? largest : threshold);
@@ -305,42 +328,60 @@ class Group {
     to_quads(q[1], q[4], q[7], Lanes{}, by);
     to_quads(q[2], q[5], q[8], Lanes{}, bz);
     for (int n = 0; n < count_; ++n) {
-      if (place_.at_home(n))
-        scatter<S>(place_, n, momentum[n], bx[n], by[n], bz[n], reinterpret_cast<Quad*>(pass_.tile));
-      else
+      if (!place_.at_home(n)) {
         scatter_stray(n, momentum[n], bx[n], by[n], bz[n]);
+      } else if (const auto side = side_of(n)) {
+        const int corner = place_.corner(n);
+        const TwoFields<S> fields{{momentum_tiles_[0] + corner, momentum_tiles_[1] + corner}, side};
+        scatter<S>(place_, n, momentum[n], bx[n], by[n], bz[n], fields);
+      } else {
+        const OneField<S> field{momentum_tiles_[0] + place_.corner(n)};
+        scatter<S>(place_, n, momentum[n], bx[n], by[n], bz[n], field);
+      }
     }
   }
 
-  void stray_stencil(int lane, int cell[3], double weight[3][4]) const {
-    for (int a = 0; a < 3; ++a) {
-      cell[a] = pass_.cell[a] + place_.base[a][lane];
-      for (int n = 0; n < 4; ++n) weight[a][n] = n < Place<S>::nodes ? place_.weight[a][n][lane] : 0;
+  /// In which fields the nodes around a point are for it. A point that came to another cell is classified anew.
+  unsigned long long side_of(int lane) {
+    if (!pass_.second.tile) return 0;
+    const int n = lane_ + lane, corner = place_.corner(lane);
+    if (chunk_.side_corner[n] != corner) {
+      const Stray at = stray(lane);
+      chunk_.side[n] = handler_.sides(handler_.self, at.cell, at.material_position);
+      chunk_.side_corner[n] = corner;
     }
+    return chunk_.side[n];
+  }
+
+  Stray stray(int lane) const {
+    Stray result;
+    for (int a = 0; a < 3; ++a) {
+      result.cell[a] = pass_.cell[a] + place_.base[a][lane];
+      for (int n = 0; n < 4; ++n) result.weight[a][n] = n < Place<S>::nodes ? place_.weight[a][n][lane] : 0;
+      result.material_position[a] = chunk_.material_position[a][lane_ + lane];
+    }
+    return result;
   }
 
   void gather_stray(int lane, Quad (*sums)[width]) const {
-    int cell[3];
-    double weight[3][4];
-    stray_stencil(lane, cell, weight);
     Node found[4];
-    strays_.gather(strays_.self, cell, weight, found);
+    handler_.gather(handler_.self, stray(lane), found);
     for (int k = 0; k < 4; ++k) sums[k][lane] = load_quad(found[k].value);
   }
 
   void scatter_stray(int lane, Quad momentum, Quad bx, Quad by, Quad bz) const {
-    Stray stray;
-    stray_stencil(lane, stray.cell, stray.weight);
-    store_quad(stray.momentum.value, momentum);
-    store_quad(stray.slope[0].value, bx);
-    store_quad(stray.slope[1].value, by);
-    store_quad(stray.slope[2].value, bz);
-    strays_.scatter(strays_.self, pass_.block, stray);
+    Stray result = stray(lane);
+    store_quad(result.momentum.value, momentum);
+    store_quad(result.slope[0].value, bx);
+    store_quad(result.slope[1].value, by);
+    store_quad(result.slope[2].value, bz);
+    handler_.scatter(handler_.self, pass_.block, result);
   }
 
   const StepConstants& c_;
-  const StrayHandler& strays_;
-  const Quad* tile_;
+  const StepHandler& handler_;
+  Quad* const velocity_tiles_[2];
+  Quad* const momentum_tiles_[2];
   BlockPass& pass_;
   PointChunk& chunk_;
   MotionChunk* motion_;
@@ -375,26 +416,33 @@ inline void prefetch(const PointChunk* chunk) {
 }
 
 template <class S, Stage stage>
-void run_pass(const StepConstants& constants, const StrayHandler& strays, BlockPass& pass) {
-  alignas(64) Quad velocity[tile_nodes(S::name)];
-  if constexpr (stage != Stage::start) fill_tile<S>(pass.velocity, velocity);
-  if constexpr (stage != Stage::finish)
+void run_pass(const StepConstants& constants, const StepHandler& handler, BlockPass& pass) {
+  alignas(64) Quad first_field[tile_nodes(S::name)], second_field[tile_nodes(S::name)];
+  Quad* const velocity[2] = {first_field, pass.second.tile ? second_field : nullptr};
+  if constexpr (stage != Stage::start) {
+    fill_tile<S>(pass.velocity, first_field);
+    if (pass.second.tile) fill_tile<S>(pass.second.velocity, second_field);
+  }
+  if constexpr (stage != Stage::finish) {
     for (int n = 0; n < tile_nodes(S::name); ++n) store_quad(pass.tile[n].value, Quad{});
+    if (pass.second.tile)
+      for (int n = 0; n < tile_nodes(S::name); ++n) store_quad(pass.second.tile[n].value, Quad{});
+  }
   for (int first = 0; first < pass.count; first += width) {
     if (first % chunk_size == 0) prefetch(pass.chunks + first / chunk_size + 1);
-    Group<S, stage> group(constants, strays, velocity, pass, first);
+    Group<S, stage> group(constants, handler, velocity, pass, first);
     group.run();
   }
 }
 
 template <class S>
-void run_sum(const BlockSum& block) {
+inline void add_tiles(const Node* const tile[8], Quad total[block_nodes]) {
   constexpr int edge = tile_edge(S::name), above = edge - block_edge;
-  Quad total[block_nodes] = {};
+  for (int n = 0; n < block_nodes; ++n) total[n] = Quad{};
   for (int x = 0; x < 2; ++x)
     for (int y = 0; y < 2; ++y)
       for (int z = 0; z < 2; ++z) {
-        const Node* from = block.tile[4 * x + 2 * y + z];
+        const Node* from = tile[4 * x + 2 * y + z];
         if (!from) continue;
         const int nx = x ? above : block_edge, ny = y ? above : block_edge, nz = z ? above : block_edge;
         for (int i = 0; i < nx; ++i)
@@ -403,14 +451,59 @@ void run_sum(const BlockSum& block) {
             for (int k = 0; k < nz; ++k) total[(i * block_edge + j) * block_edge + k] += load_quad(row[k].value);
           }
       }
-  // Weights go to zero smoothly, so a node can hold a mass whose inverse is not finite.
-  constexpr double least_mass = 1e-290;
-  for (int n = 0; n < block_nodes; ++n) {
-    const double mass = total[n][3];
-    Quad v = mass > least_mass ? total[n] / mass : Quad{};
-    v[3] = mass;
-    store_quad(block.nodes[n].value, v);
+}
+
+/// Weights go to zero smoothly, so a node can hold a mass whose inverse is not finite.
+inline bool has_mass(Quad momentum) { return momentum[3] > 1e-290; }
+
+inline Quad velocity_of(Quad momentum) {
+  Quad v = has_mass(momentum) ? momentum / momentum[3] : Quad{};
+  v[3] = momentum[3];
+  return v;
+}
+
+inline double dot(Quad a, Quad b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/// Contact of the two fields of a node across a crack plane: where they approach, they get a common normal velocity,
+/// and friction takes at most `friction` times that change from their sliding. Bardenhagen et al. (2000); Fan (2024)
+/// eq. 3.7 prints the sign of separation and eq. 3.6 a normal that is not a unit vector.
+inline void make_contact(Quad n, double friction, Quad& first, Quad& second) {
+  const double m1 = first[3], m2 = second[3], reduced = m1 * m2 / (m1 + m2);
+  Quad relative = first - second;
+  relative[3] = 0;
+  const double approach = -dot(relative, n);
+  if (approach <= 0) return;
+  // Impulse on the first field: along the normal, and against the sliding.
+  const Quad slide = relative + approach * n;
+  const double speed = __builtin_sqrt(dot(slide, slide)), most = friction * approach;
+  Quad impulse = reduced * approach * n;
+  if (speed > 0) impulse -= reduced * (speed < most ? speed : most) / speed * slide;
+  impulse[3] = 0;
+  first += impulse / m1;
+  second -= impulse / m2;
+}
+
+template <class S>
+void run_sum(const BlockSum& block) {
+  Quad first[block_nodes];
+  add_tiles<S>(block.tile, first);
+  for (int n = 0; n < block_nodes; ++n) first[n] = velocity_of(first[n]);
+  if (block.second_nodes) {
+    Quad second[block_nodes];
+    add_tiles<S>(block.second_tile, second);
+    for (int n = 0; n < block_nodes; ++n) {
+      const bool behind = has_mass(second[n]), before = has_mass(first[n]);
+      second[n] = velocity_of(second[n]);
+      if (behind && before) make_contact(load_quad(block.normals[n].value), block.friction, first[n], second[n]);
+      // A field without material moves with the other one, should a point come to it.
+      else if (behind)
+        first[n] = second[n] * Quad{1, 1, 1, 0};
+      else
+        second[n] = first[n] * Quad{1, 1, 1, 0};
+      store_quad(block.second_nodes[n].value, second[n]);
+    }
   }
+  for (int n = 0; n < block_nodes; ++n) store_quad(block.nodes[n].value, first[n]);
 }
 
 template <class S>

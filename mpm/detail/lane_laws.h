@@ -82,6 +82,18 @@ struct Principal {
 
   Lanes value(int n) const { return q + p * root[n]; }
 
+  /// Elastic energy of the tensile stresses per volume, sum of s_k e_k / 2 with the strains e of Hooke's law.
+  Lanes tensile_energy(double mu, double lambda) const {
+    const double nu = lambda / (2 * (lambda + mu)), modulus = 2 * mu * (1 + nu);
+    const Lanes trace = 3.0 * q;
+    Lanes sum = {};
+    for (int k = 0; k < 3; ++k) {
+      const Lanes v = value(k);
+      sum += v > 0.0 ? v * ((1 + nu) * v - nu * trace) : Lanes{};
+    }
+    return (0.5 / modulus) * sum;
+  }
+
   /// s+, the tensile part of s. Where the middle value is tensile it is s less the compressive part, so that only the
   /// projector on one direction whose value has the other sign than its neighbour is ever needed: its denominator may
   /// vanish no faster than that value.

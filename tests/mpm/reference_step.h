@@ -72,8 +72,10 @@ class ReferenceStep {
     if (std::isfinite(p.strength) && largest > p.threshold) {
       const double before = p.damage;
       p.damage = std::max(p.damage, std::min(1.0, (1 + p.softening_slope) * (1 - p.strength / largest)));
-      p.dissipated +=
-          (p.damage - before) * 0.25 * (p.threshold * p.threshold + largest * largest) / material_.youngs_modulus;
+      const double nu = material_.poisson_ratio, trace = eigen.eigenvalues().sum();
+      for (int k = 0; k < 3; ++k)
+        if (const double v = eigen.eigenvalues()[k]; v > 0)
+          p.dissipated += (p.damage - before) * v * ((1 + nu) * v - nu * trace) / (2 * material_.youngs_modulus);
       p.threshold = largest;
     }
     Mat3 damaged = Mat3::Zero();
