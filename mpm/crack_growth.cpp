@@ -46,7 +46,7 @@ CrackGrowth::CrackGrowth(const Material& material, const SolveSettings& settings
                          Continuum& body)
     : law_(law_of(material, settings, body.cell_size())),
       nucleation_strength_(strength_scatter(points, material.weibull_modulus,
-                                            settings.scatter_length * body.cell_size(), settings.seed)),
+                                            settings.scatter_length.value_or(3 * body.cell_size()), settings.seed)),
       reach_(settings.front.shield_radius * body.cell_size()),
       memory_(points.size()),
       fronts_(box_of(points), body.cell_size(), material.p_wave_speed(), settings.front),

@@ -1,6 +1,7 @@
 #pragma once
 /// One short explicit damage solve of one body under its loads: what a load does to the material of one body.
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -57,11 +58,11 @@ struct SolveSettings {
   double viscosity = 0.1;          ///< of undamaged material, in rho c_p h
   double band_width = 2.2;         ///< l_ch in h: width of the numerical damage band (Fan prints sqrt(3), 40 % off)
   double smallest_patch = 1.5;     ///< radius of the loaded patch is at least this many h
-  double scatter_length = 3;       ///< correlation length of the strength in h
-  double quiet_transits = 2;       ///< stop when no particle failed for this long after the contact, in L / c_p
-  double most_transits = 8;        ///< stop this long after the contact at the latest
-  double most_damaged_share = 1;   ///< stop when this share of the particles is damaged
-  long most_steps = 10000000;      ///< stop after so many steps whatever happens
+  std::optional<double> scatter_length;  ///< correlation length of the strength [m]; not set: 3 h
+  double quiet_transits = 2;             ///< stop when no particle failed for this long after the contact, in L / c_p
+  double most_transits = 8;              ///< stop this long after the contact at the latest
+  double most_damaged_share = 1;         ///< stop when this share of the particles is damaged
+  long most_steps = 10000000;            ///< stop after so many steps whatever happens
   Spline spline = Spline::quadratic;
   bool two_fields = false;      ///< material on the two sides of a crack front's path moves apart (front rules only)
   double crack_friction = 0.3;  ///< Coulomb's coefficient between them

@@ -61,6 +61,9 @@ FractureInput Simulation::fracture_input(const Hit& hit, std::vector<rigid::Body
   }
   input.solve.damage = scene_.fracture.damage == DamageModel::front ? mpm::DamageModel::front : mpm::DamageModel::local;
   input.solve.load = scene_.fracture.load == LoadModel::contact ? mpm::LoadModel::contact : mpm::LoadModel::prescribed;
+  input.solve.two_fields = scene_.fracture.velocity_fields == 2;
+  input.solve.spline = scene_.fracture.spline;
+  input.solve.scatter_length = scene_.fracture.scatter_length;
   input.seed = input.solve.seed =
       random_word(scene_.seed, static_cast<std::uint64_t>(piece.id), report_.fractures.size());
   const double share = piece.volume / original_volume_[static_cast<std::size_t>(live.origin_index)];
@@ -84,7 +87,8 @@ FractureRecord record_of(const FractureInput& input, const FractureOutcome& outc
   record.lump_share = outcome.lump_share;
   record.volume_error = outcome.volume_error;
   record.work_over_impact_energy = outcome.solve.work / outcome.solve.impact_energy;
-  record.dissipated = outcome.solve.energy.fracture;
+  record.energy = outcome.solve.energy;
+  record.stopped_by = mpm::name_of(outcome.solve.stop);
   record.band_width = outcome.solve.band_width;
   record.admissible_length = outcome.solve.admissible_length;
   record.tensile_strength = input.material.tensile_strength;

@@ -21,7 +21,9 @@ struct FractureRecord {
   StageSeconds seconds;
   int fragments = 0;  ///< 0: stayed whole
   double damaged_share = 0, lump_share = 0, volume_error = 0;
-  double work_over_impact_energy = 0, dissipated = 0;
+  double work_over_impact_energy = 0;
+  mpm::EnergyLedger energy;  ///< [J]
+  std::string stopped_by;    ///< what ended the solve
   double kinetic_before = 0, kinetic_after = 0;           ///< of the body and its partners [J]
   double band_width = 0, admissible_length = 0;           ///< l_ch, l_max [m]
   double tensile_strength = 0, propagation_strength = 0;  ///< of the material, and used at crack fronts [Pa]

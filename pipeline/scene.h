@@ -8,6 +8,7 @@
 
 #include "core/types.h"
 #include "geometry/load.h"
+#include "mpm/spline.h"
 #include "pipeline/material.h"
 #include "rigid/world.h"
 
@@ -56,6 +57,9 @@ struct FractureSettings {
   double refracture_delay = 0.05;  ///< a fragment cannot break sooner after its birth [s]
   DamageModel damage = DamageModel::front;
   LoadModel load = LoadModel::contact;
+  int velocity_fields = 1;  ///< 2: the sides of a crack part and rub while the solve goes on
+  mpm::Spline spline = mpm::Spline::quadratic;
+  std::optional<double> scatter_length;  ///< over which the strength varies [m]; not set: three cells
 };
 
 struct Effects {

@@ -56,7 +56,13 @@ void read_load(const Value& value, FractureSettings& settings) {
   settings.load = value.word<LoadModel>(kModels);
 }
 
-constexpr std::array<Key<FractureSettings>, 6> kFractureKeys = {{
+void read_spline(const Value& value, FractureSettings& settings) {
+  constexpr std::array<std::pair<std::string_view, mpm::Spline>, 2> kSplines = {
+      {{"quadratic", mpm::Spline::quadratic}, {"cubic", mpm::Spline::cubic}}};
+  settings.spline = value.word<mpm::Spline>(kSplines);
+}
+
+constexpr std::array<Key<FractureSettings>, 9> kFractureKeys = {{
     {"minimum_impulse",
      [](const Value& value, FractureSettings& settings) { settings.minimum_impulse = value.non_negative(); }},
     {"minimum_volume",
@@ -69,6 +75,13 @@ constexpr std::array<Key<FractureSettings>, 6> kFractureKeys = {{
      [](const Value& value, FractureSettings& settings) { settings.refracture_delay = value.non_negative(); }},
     {"damage", read_damage},
     {"load", read_load},
+    {"velocity_fields",
+     [](const Value& value, FractureSettings& settings) {
+       settings.velocity_fields = static_cast<int>(value.integer(1, 2));
+     }},
+    {"spline", read_spline},
+    {"scatter_length",
+     [](const Value& value, FractureSettings& settings) { settings.scatter_length = value.positive(); }},
 }};
 
 constexpr std::array<Key<Effects>, 3> kEffectsKeys = {{

@@ -113,6 +113,9 @@ maximum_fractures = 2
 refracture_delay = 0
 damage = "local"
 load = "prescribed"
+velocity_fields = 2
+spline = "cubic"
+scatter_length = 0.02
 [effects]
 fracture = true
 refracture = false
@@ -149,6 +152,9 @@ glb = false
   EXPECT_EQ(scene.fracture.refracture_delay, 0);
   EXPECT_EQ(scene.fracture.damage, DamageModel::local);
   EXPECT_EQ(scene.fracture.load, LoadModel::prescribed);
+  EXPECT_EQ(scene.fracture.velocity_fields, 2);
+  EXPECT_EQ(scene.fracture.spline, mpm::Spline::cubic);
+  EXPECT_EQ(scene.fracture.scatter_length, 0.02);
   EXPECT_TRUE(scene.effects.fracture);
   EXPECT_FALSE(scene.effects.refracture);
   EXPECT_FALSE(scene.effects.strength_scatter);
