@@ -69,23 +69,29 @@ CrackGrowth::CrackGrowth(const Material& material, const SolveSettings& settings
 }
 
 /// Points that the new front may have a say about fail at its strength from now on, and the near ones are asked again.
-void CrackGrowth::wake(const Candidate& front, Continuum& body) {
-  MaterialBins<Neighbourhood>::visit(neighbourhoods_, front.position, reach_, [&](Neighbourhood& there) {
+void CrackGrowth::wake(const Vec3& front, const Vec3& normal, Continuum& body) {
+  MaterialBins<Neighbourhood>::visit(neighbourhoods_, front, reach_, [&](Neighbourhood& there) {
     if (!there.awake)
       for (int id : there.points) body.lower_threshold(id, law_.strength);
     there.awake = true;
     return false;
   });
-  MaterialBins<Neighbourhood>::visit(neighbourhoods_, front.position, fronts_.near_distance(),
-                                     [&](Neighbourhood& there) {
-                                       for (int id : there.points) {
-                                         if (!fronts_.reaches(front.position, front.normal, body.material_position(id)))
-                                           continue;
-                                         memory_[static_cast<std::size_t>(id)].look_again = 0;
-                                         memory_[static_cast<std::size_t>(id)].near_fronts = true;
-                                       }
-                                       return false;
-                                     });
+  MaterialBins<Neighbourhood>::visit(neighbourhoods_, front, fronts_.near_distance(), [&](Neighbourhood& there) {
+    for (int id : there.points) {
+      if (!fronts_.reaches(front, normal, body.material_position(id))) continue;
+      memory_[static_cast<std::size_t>(id)].look_again = 0;
+      memory_[static_cast<std::size_t>(id)].near_fronts = true;
+    }
+    return false;
+  });
+}
+
+void CrackGrowth::add_front(int id, const Vec3& normal, double time, Continuum& body) {
+  const Vec3 position = body.material_position(id);
+  fronts_.add(position, normal, time);
+  closed_.push_back(front_points_.size());
+  front_points_.push_back({id, normal});
+  wake(position, normal, body);
 }
 
 void CrackGrowth::seed(int id, const Vec3& normal, Continuum& body) {
@@ -95,19 +101,42 @@ void CrackGrowth::seed(int id, const Vec3& normal, Continuum& body) {
   state.damage = 1;
   if (state.damage_time < 0) state.damage_time = 0;
   body.set_point(id, state);
-  const Vec3 position = state.material_position;
   // Cracks that are there have had all the time that a front needs.
-  fronts_.add(position, normal, -std::numeric_limits<double>::infinity());
-  closed_.emplace_back(id, normal);
-  wake({id, position, normal, 0, 0}, body);
+  add_front(id, normal, -std::numeric_limits<double>::infinity(), body);
+}
+
+void CrackGrowth::inherit(const PriorDamage& prior, Continuum& body) {
+  for (std::size_t id = 0; id < prior.damage.size(); ++id) {
+    const double c = prior.damage[id];
+    if (c <= 0) continue;
+    PointState state = body.point(static_cast<int>(id));
+    if (std::isinf(state.strength)) {
+      state.strength = law_.strength;
+      state.softening_slope = law_.slope;
+    }
+    // The stress that did this damage: c = (1 + H) (1 - strength / r).
+    state.threshold = state.strength / (1 - std::min(c, 1.0) / (1 + state.softening_slope));
+    state.damage = c;
+    if (c >= failed_damage) state.damage_time = 0;
+    body.set_point(static_cast<int>(id), state);
+  }
+  for (const PriorDamage::Front& front : prior.fronts)
+    add_front(front.particle, front.normal, -std::numeric_limits<double>::infinity(), body);
+}
+
+PriorDamage CrackGrowth::damage(const Continuum& body) const {
+  PriorDamage result;
+  for (int id = 0; id < body.size(); ++id) result.damage.push_back(body.damage(id));
+  result.fronts = front_points_;
+  return result;
 }
 
 std::vector<CrackFace> CrackGrowth::new_faces(const Continuum& body) {
   std::vector<CrackFace> faces;
-  std::erase_if(closed_, [&](const auto& front) {
-    const auto& [id, normal] = front;
-    if (body.damage(id) < failed_damage) return false;
-    faces.push_back({body.material_position(id), normal});
+  std::erase_if(closed_, [&](std::size_t n) {
+    const PriorDamage::Front& front = front_points_[n];
+    if (body.damage(front.particle) < failed_damage) return false;
+    faces.push_back({body.material_position(front.particle), front.normal});
     return true;
   });
   return faces;
@@ -152,9 +181,7 @@ void CrackGrowth::decide(const std::vector<Asked>& asked, double time, Continuum
     body.start_crack(c.particle, law_.strength, law_.slope);
     if (verdict == Verdict::nucleate) ++nuclei_;
     if (verdict == Verdict::filler) continue;
-    fronts_.add(c.position, c.normal, time);
-    closed_.emplace_back(c.particle, c.normal);
-    wake(c, body);
+    add_front(c.particle, c.normal, time, body);
   }
 }
 

@@ -18,6 +18,9 @@ class CrackGrowth {
 
   /// A point of a crack that is there already: it has failed, pulls the crack ahead and shields beside it.
   void seed(int id, const Vec3& normal, Continuum& body);
+  /// Damage and cracks of an earlier solve of the same points. Before the first step.
+  void inherit(const PriorDamage& prior, Continuum& body);
+  PriorDamage damage(const Continuum& body) const;
   /// After each advance(): starts the cracks that the rules allow.
   void grow(double time, Continuum& body);
 
@@ -29,7 +32,8 @@ class CrackGrowth {
   long nuclei() const { return nuclei_; }  ///< cracks that started in virgin material
 
  private:
-  void wake(const Candidate& front, Continuum& body);
+  void add_front(int id, const Vec3& normal, double time, Continuum& body);
+  void wake(const Vec3& front, const Vec3& normal, Continuum& body);
   Candidate candidate(int id, const Continuum& body) const;
   CrackFronts::Sight look(const Candidate& candidate, double time);
   struct Asked {
@@ -51,7 +55,8 @@ class CrackGrowth {
   std::vector<Memory> memory_;
   long step_ = 0;
   CrackFronts fronts_;
-  std::vector<std::pair<int, Vec3>> closed_;  ///< fronts that have not failed yet, with the normal of the crack there
+  std::vector<PriorDamage::Front> front_points_;  ///< by sequence number
+  std::vector<std::size_t> closed_;               ///< those that have not failed yet
   struct Neighbourhood {
     std::vector<int> points;
     bool awake = false;  ///< a front is within its reach; before, only the nucleation strength of the points matters

@@ -23,7 +23,7 @@ void require(bool holds, const std::string& what) {
 bool positive(double x) { return x > 0 && std::isfinite(x); }
 
 void check(const SolveInput& input, const SolveSettings& settings) {
-  const auto& [points, volume, m, loads, partners, held] = input;
+  const auto& [points, volume, m, loads, partners, held, prior] = input;
   require(!points.empty() && positive(volume), "a solve needs points and a positive volume");
   for (const Vec3& x : points) require(x.allFinite(), "a point is not finite");
   require(
@@ -32,6 +32,10 @@ void check(const SolveInput& input, const SolveSettings& settings) {
   require(m.poisson_ratio > -1 && m.poisson_ratio < 0.5, "Poisson's ratio must lie in (-1, 0.5)");
   require(settings.cfl > 0 && settings.cfl <= 1, "cfl must lie in (0, 1]: beyond 1 the explicit step is unstable");
   require(!loads.empty(), "a solve needs a load");
+  require(prior.damage.empty() || prior.damage.size() == points.size(), "prior damage must name every point");
+  for (const PriorDamage::Front& front : prior.fronts)
+    require(front.particle >= 0 && static_cast<std::size_t>(front.particle) < points.size(),
+            "a prior crack names a particle that is not there");
   for (const HeldRegion& region : held)
     require(!region.region.isEmpty() && region.velocity.allFinite(), "a held region must not be empty");
   for (const Load& load : loads) {
@@ -157,6 +161,7 @@ Solver::Solver(const SolveInput& input, const SolveSettings& settings)
   const Vec3 margin = Vec3::Constant(0.5 * box.diagonal().norm() + 4 * scales_.cell_size);
   room_ = Box(box.min() - margin, box.max() + margin);
   body_.hold(input.held);
+  cracks_.inherit(input.prior, body_);
   for (const Load& load : input.loads) {
     const Partner& partner = input.partners[static_cast<std::size_t>(load.partner)];
     loads_.emplace_back(load, body_mass_, partner, input.material, settings, body_);
@@ -253,6 +258,8 @@ SolveResult Solver::result(StopReason stop) {
   r.particle_mass = body_.particle_mass();
   r.work = work_;
   r.impact_energy = impact_energy_;
+  r.failures = body_.failures();
+  r.cracks = cracks_.damage(body_);
   r.nuclei = cracks_.nuclei();
   r.crushed_resets = body_.resets();
   r.memory = body_.memory();

@@ -84,6 +84,16 @@ struct ParticleState {
   double damage_time = -1;  ///< when damage reached 1 [s]; -1: never
 };
 
+/// Damage that particles keep from one solve to the next.
+struct PriorDamage {
+  std::vector<double> damage;  ///< by particle; empty: none
+  struct Front {
+    int particle;
+    Vec3 normal;  ///< of the crack there, unit
+  };
+  std::vector<Front> fronts;  ///< particles on the mid-surfaces of cracks
+};
+
 /// What ended a solve.
 enum class StopReason {
   quiet,       ///< contacts over and nothing failed for a while
@@ -115,6 +125,8 @@ struct SolveResult {
   double impact_energy = 0;  ///< kinetic, of body and partners in their common frame: 1/2 m_s v^2 for one partner [J]
   EnergyLedger energy;
   double damaged_share = 0;  ///< particles with damage >= 0.95 / particles
+  long failures = 0;         ///< particles that failed in this solve
+  PriorDamage cracks;        ///< for a later solve of the same particles
   long nuclei = 0;           ///< cracks that started in virgin material (front rules)
   long crushed_resets = 0;   ///< particles whose deformation left the range of the material law and was reset, counted
   std::size_t memory = 0;    ///< of particles and grid [bytes]
@@ -131,7 +143,8 @@ struct SolveInput {
   Material material;
   std::vector<Load> loads;
   std::vector<Partner> partners;
-  std::vector<HeldRegion> held;  ///< fixed parts of the body
+  std::vector<HeldRegion> held = {};  ///< fixed parts of the body
+  PriorDamage prior = {};             ///< what earlier solves did to these particles
 };
 
 /// The result does not depend on the number of threads. Errors: ErrorKind::unstable when a value stops being finite

@@ -67,6 +67,7 @@ FractureInput Simulation::fracture_input(const Hit& hit, std::vector<rigid::Body
   input.seed = input.solve.seed =
       random_word(scene_.seed, static_cast<std::uint64_t>(piece.id), report_.fractures.size());
   const double share = piece.volume / original_volume_[static_cast<std::size_t>(live.origin_index)];
+  input.own = live.particles;
   input.particles =
       static_cast<int>(settings_of(scene_.quality).particles * std::clamp(share, fragment_particle_share, 1.0));
   return input;
@@ -112,7 +113,10 @@ void Simulation::solve(const Hit& hit, Progress& progress) {
   record.impulse = hit.impulse;
   account(record, outcome);
   note_coarse_grid(input.material, record);
-  if (outcome.pieces.size() >= 2) hand_over(hit, outcome, partners, record);
+  if (outcome.pieces.size() >= 2)
+    hand_over(hit, outcome, partners, record);
+  else
+    live.particles = outcome.own;
   report_.fractures.push_back(record);
   options_.on_fracture(report_.fractures.back());
 }
@@ -241,8 +245,13 @@ void Simulation::hand_over(const Hit& hit, const FractureOutcome& outcome, const
   ++families_;
   sequence_.pieces[static_cast<std::size_t>(parent.piece)].death_time = world_.time();
   for (std::size_t k = 0; k < pieces.size(); ++k) {
-    const Live live{
-        pieces[k].id, parent.origin, parent.origin_index, {body_parts[k].mass, Vec3::Zero(), body_parts[k].inertia}};
+    const RigidPart& part = body_parts[k];
+    Live live{pieces[k].id, parent.origin, parent.origin_index, {part.mass, Vec3::Zero(), part.inertia}};
+    if (const auto& own = outcome.pieces[k].own) {
+      Particles moved = *own;
+      for (Vec3& x : moved.samples.points) x -= part.centre;
+      live.particles = std::make_shared<Particles>(std::move(moved));
+    }
     add_body(pieces[k], live, {state.pose.position + parts[k].centre, q}, twists[k], families_);
   }
   std::move(pieces.begin(), pieces.end(), std::back_inserter(sequence_.pieces));

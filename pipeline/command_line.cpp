@@ -14,6 +14,7 @@
 #include "pipeline/progress_display.h"
 #include "pipeline/quality.h"
 #include "pipeline/run.h"
+#include "pipeline/validate.h"
 #include "sunder_version.h"
 
 namespace sunder::pipeline {
@@ -106,6 +107,11 @@ int inspect_command(const std::string& file, double unit) {
   return report.is_solid() ? 0 : static_cast<int>(ErrorKind::mesh);
 }
 
+int validate_command(const ValidateOptions& options) {
+  const auto progress = make_progress_display(LogFormat::text);
+  return validate(options, *progress) ? 0 : 1;
+}
+
 int dispatch(int argc, char** argv, LogFormat& log) {
   CLI::App app("Sunder breaks things the way they break: a scene file goes in, a shatter sequence comes out.");
   app.set_version_flag("--version", std::string(SUNDER_VERSION) + " (" + SUNDER_GIT + ")");
@@ -129,6 +135,12 @@ int dispatch(int argc, char** argv, LogFormat& log) {
   inspect_app->add_option("mesh", mesh_file, "Mesh file")->required();
   inspect_app->add_option("--unit", unit, "Metres per unit of the file")->check(CLI::PositiveNumber);
 
+  ValidateOptions validate_options;
+  auto* validate_app = app.add_subcommand(
+      "validate", "Run the catalogue of validation problems; exit code 0 when every check holds, 1 when one fails");
+  validate_app->add_option("--only", validate_options.only, "Ids of the problems to run (default: all)");
+  validate_app->add_option("--json", validate_options.json, "File for the results");
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -136,6 +148,7 @@ int dispatch(int argc, char** argv, LogFormat& log) {
   }
   if (*run_app) return run_command(run_arguments, log);
   if (*check_app) return check_command(check_file);
+  if (*validate_app) return validate_command(validate_options);
   return inspect_command(mesh_file, unit);
 }
 

@@ -15,6 +15,8 @@ namespace sunder::pipeline {
 namespace {
 
 constexpr int cut_attempts = 4;
+/// A piece of more than this share of the body keeps its particles.
+constexpr double nearly_whole = 0.98;
 
 mpm::Material solid(const Material& m) {
   return {m.density, m.youngs_modulus, m.poisson_ratio, m.tensile_strength, m.fracture_energy, m.weibull_modulus};
@@ -104,28 +106,48 @@ std::vector<Twist> region_motion(const geometry::Samples& samples, const mpm::So
   return twists;
 }
 
+/// Those of one region.
+Particles particles_of(const Particles& all, const std::vector<int>& region, int wanted) {
+  Particles kept{{{}, all.samples.spacing}, {}};
+  std::vector<int> number(region.size(), -1);
+  for (std::size_t p = 0; p < region.size(); ++p) {
+    if (region[p] != wanted) continue;
+    number[p] = static_cast<int>(kept.samples.points.size());
+    kept.samples.points.push_back(all.samples.points[p]);
+    kept.damage.damage.push_back(all.damage.damage[p]);
+  }
+  for (const auto& front : all.damage.fronts)
+    if (const int n = number[static_cast<std::size_t>(front.particle)]; n >= 0)
+      kept.damage.fronts.push_back({n, front.normal});
+  return kept;
+}
+
 }  // namespace
 
 FractureOutcome fracture(const FractureInput& input, Progress& progress) {
   FractureOutcome outcome;
-  geometry::Samples samples;
-  {
+  Particles particles;
+  if (input.own) {
+    particles = *input.own;
+  } else {
     const Stopwatch watch(outcome.seconds.sample);
-    samples = geometry::sample_solid(input.mesh, {.count = input.particles, .seed = input.seed}, progress);
+    particles.samples = geometry::sample_solid(input.mesh, {.count = input.particles, .seed = input.seed}, progress);
   }
+  const geometry::Samples& samples = particles.samples;
   auto loads = input.loads;
   for (mpm::Load& load : loads) load.point = surface_point(samples, load);
   const double volume = geometry::mass_properties(input.mesh).volume;
   {
     const Stopwatch watch(outcome.seconds.solve);
-    outcome.solve =
-        mpm::solve({samples.points, volume, solid(input.material), loads, input.partners, {}}, input.solve, progress);
+    outcome.solve = mpm::solve({samples.points, volume, solid(input.material), loads, input.partners, {}, {}},
+                               input.solve, progress);
   }
   outcome.particles = static_cast<long>(samples.points.size());
   if (outcome.solve.crushed_resets > 0)
     outcome.fallbacks["crushed_particles_reset"] += static_cast<int>(outcome.solve.crushed_resets);
   outcome.damaged_share = outcome.solve.damaged_share;
-  if (outcome.damaged_share == 0) return outcome;
+  outcome.own = std::make_shared<Particles>(Particles{samples, outcome.solve.cracks});
+  if (outcome.solve.failures == 0) return outcome;
 
   const Pieces pieces = extract_and_cut(input, damage_field(samples, outcome.solve), outcome, progress);
   outcome.lump_share = pieces.extraction.lump_share;
@@ -136,8 +158,11 @@ FractureOutcome fracture(const FractureInput& input, Progress& progress) {
       region_motion(samples, outcome.solve, pieces.extraction.region, pieces.extraction.region_count, centre);
   for (const geometry::Fragment& fragment : pieces.cut.fragments) {
     const std::size_t k = static_cast<std::size_t>(fragment.region);
-    const Vec3 c = geometry::mass_properties(fragment.mesh).centroid;
-    outcome.pieces.push_back({fragment, {motion[k].at(c - centre[k]), motion[k].angular}});
+    const geometry::MassProperties whole = geometry::mass_properties(fragment.mesh);
+    BrokenPiece piece{fragment, {motion[k].at(whole.centroid - centre[k]), motion[k].angular}, nullptr};
+    if (whole.volume > nearly_whole * volume)
+      piece.own = std::make_shared<Particles>(particles_of(*outcome.own, pieces.extraction.region, fragment.region));
+    outcome.pieces.push_back(std::move(piece));
   }
   return outcome;
 }

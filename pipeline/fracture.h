@@ -1,12 +1,14 @@
 #pragma once
 /// One body breaks: sample, solve, extract, cut. Values in, values out; nothing here knows of worlds or scenes.
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "core/progress.h"
 #include "geometry/cut.h"
 #include "geometry/mesh.h"
+#include "geometry/sample.h"
 #include "mpm/solve.h"
 #include "pipeline/material.h"
 
@@ -20,13 +22,21 @@ struct StageSeconds {
   double sample = 0, solve = 0, extract = 0, cut = 0;
 };
 
+/// The particles of a body with the damage that they took: kept while the body stays whole, so that the next hit finds
+/// the cracks of the last one.
+struct Particles {
+  geometry::Samples samples;  ///< in the body's frame
+  mpm::PriorDamage damage;
+};
+
 struct FractureInput {
   geometry::TriangleMesh mesh;  ///< closed solid, in the body's frame [m]
   Material material;
   std::vector<mpm::Load> loads;  ///< in the body's frame; their points need to lie near the surface only
   std::vector<mpm::Partner> partners;
   mpm::SolveSettings solve;
-  int particles = 20000;
+  int particles = 20000;                           ///< to fill the body with, unless it has its own
+  std::shared_ptr<const Particles> own = nullptr;  ///< of an earlier solve
   std::uint64_t seed = 1;
 };
 
@@ -34,10 +44,12 @@ struct FractureInput {
 struct BrokenPiece {
   geometry::Fragment fragment;
   Twist twist;  ///< of its centre of mass, in the body's frame, relative to the body before the impact
+  std::shared_ptr<const Particles> own = nullptr;  ///< of a piece that is nearly the whole body, in its frame
 };
 
 struct FractureOutcome {
-  std::vector<BrokenPiece> pieces;  ///< fewer than two: the body stays whole
+  std::vector<BrokenPiece> pieces;                 ///< fewer than two: the body stays whole
+  std::shared_ptr<const Particles> own = nullptr;  ///< of the body, should it stay whole
   mpm::SolveResult solve;
   double damaged_share = 0, lump_share = 0, volume_error = 0;
   long particles = 0;

@@ -37,8 +37,9 @@ class Simulation {
     int piece = 0;
     const SceneBody* origin = nullptr;
     int origin_index = 0;
-    RigidPart part;              ///< in the piece's frame
-    double last_solve = -1e300;  ///< [s]
+    RigidPart part;                                        ///< in the piece's frame
+    double last_solve = -1e300;                            ///< [s]
+    std::shared_ptr<const Particles> particles = nullptr;  ///< of its last solve, in the piece's frame
   };
   /// The impacts that one body takes in one step.
   struct Hit {

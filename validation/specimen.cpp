@@ -34,9 +34,10 @@ mpm::ContinuumSettings continuum(const Lattice& lattice, const mpm::Material& m,
   return result;
 }
 
-std::vector<mpm::Motion> linear_motion(const Lattice& lattice, const Mat3& gradient) {
+std::vector<mpm::Motion> first_motion(const Lattice& lattice, const SpecimenSettings& settings) {
+  const Mat3& g = settings.velocity_gradient;
   std::vector<mpm::Motion> motion;
-  for (const Vec3& x : lattice.points) motion.push_back({gradient * x, gradient});
+  for (const Vec3& x : lattice.points) motion.push_back(settings.motion ? settings.motion(x) : mpm::Motion{g * x, g});
   return motion;
 }
 
@@ -67,16 +68,20 @@ Lattice plane(const Box& box, double cell_size, const std::function<bool(const V
 
 Specimen::Specimen(const Lattice& lattice, const mpm::Material& material, const SpecimenSettings& settings)
     : body(lattice.points, lattice.particle_volume, material, continuum(lattice, material, settings)),
-      motion_(linear_motion(lattice, settings.velocity_gradient)),
+      motion_(first_motion(lattice, settings)),
       particle_volume_(lattice.particle_volume),
       time_step_(settings.solve.cfl * lattice.cell_size / material.p_wave_speed()),
-      asked_(settings.held.size()) {
+      plane_strain_(settings.plane_strain) {
   if (settings.damage != Damage::none)
     cracks_.emplace(material, with_model(settings.solve, settings.damage), lattice.points, body);
-  auto held = settings.held;
-  if (settings.plane_strain)
-    held.push_back({Box(Vec3::Constant(-1e9), Vec3::Constant(1e9)), Vec3::Zero(), {false, false, true}});
-  body.hold(held);
+  hold(settings.held);
+}
+
+void Specimen::hold(std::vector<mpm::HeldRegion> regions) {
+  asked_.assign(regions.size(), {Vec3::Zero(), time_});
+  if (plane_strain_)
+    regions.push_back({Box(Vec3::Constant(-1e9), Vec3::Constant(1e9)), Vec3::Zero(), {false, false, true}});
+  body.hold(std::move(regions));
 }
 
 void Specimen::crack(const std::function<bool(const Vec3&)>& in_crack, const Vec3& normal) {
@@ -84,7 +89,7 @@ void Specimen::crack(const std::function<bool(const Vec3&)>& in_crack, const Vec
     if (in_crack(body.material_position(id))) cracks_->seed(id, normal, body);
 }
 
-void Specimen::step() {
+void Specimen::step(const std::function<void(Specimen&)>& load) {
   if (steps_ == 0) {
     body.start(motion_);
     body.update_grid();
@@ -92,6 +97,7 @@ void Specimen::step() {
   time_ += time_step_;
   body.advance(time_);
   if (cracks_) cracks_->grow(time_, body);
+  if (load) load(*this);
   body.update_grid();
   ++steps_;
 }

@@ -26,18 +26,22 @@ enum class Damage { none, local, front };
 struct SpecimenSettings {
   mpm::SolveSettings solve;  ///< cfl, band, fronts, spline; its damage model is set by `damage`
   Damage damage = Damage::none;
-  bool plane_strain = false;              ///< no motion along z
-  std::vector<mpm::HeldRegion> held;      ///< the grips
-  Mat3 velocity_gradient = Mat3::Zero();  ///< the body starts at velocity G x [1/s]
-  double viscosity = 0;                   ///< in rho c_p h
-  std::optional<Vec3> anchor;             ///< of the grid; default: the lowest corner of the points
+  bool plane_strain = false;                       ///< no motion along z
+  std::vector<mpm::HeldRegion> held;               ///< the grips
+  Mat3 velocity_gradient = Mat3::Zero();           ///< the body starts at velocity G x [1/s]
+  std::function<mpm::Motion(const Vec3&)> motion;  ///< at which it starts instead, by material position
+  double viscosity = 0;                            ///< in rho c_p h
+  std::optional<Vec3> anchor;                      ///< of the grid; default: the lowest corner of the points
 };
 
 class Specimen {
  public:
   Specimen(const Lattice& lattice, const mpm::Material& material, const SpecimenSettings& settings);
 
-  void step();
+  /// `load` may push the body; it is called when the points are where they are at time().
+  void step(const std::function<void(Specimen&)>& load = {});
+  /// Other grips from now on; forces count from here.
+  void hold(std::vector<mpm::HeldRegion> regions);
   double time() const { return time_; }
   double time_step() const { return time_step_; }
   long steps() const { return steps_; }
@@ -47,7 +51,7 @@ class Specimen {
   void crack(const std::function<bool(const Vec3&)>& in_crack, const Vec3& normal);
   /// Force of a held region on the body, averaged since this was last asked for it [N].
   Vec3 force(std::size_t region);
-  /// Damaged particles, and the energy that damage dissipated [J].
+  /// Failed particles, and the energy that damage dissipated [J].
   long failed() const;
   double dissipated() const;
 
@@ -55,7 +59,9 @@ class Specimen {
 
  private:
   const std::vector<mpm::Motion> motion_;
-  double particle_volume_, time_step_, time_ = 0;
+  const double particle_volume_, time_step_;
+  const bool plane_strain_;
+  double time_ = 0;
   long steps_ = 0;
   std::optional<mpm::CrackGrowth> cracks_;
   struct Asked {

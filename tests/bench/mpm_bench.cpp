@@ -3,22 +3,29 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <functional>
+#include <stdexcept>
 #include <string>
 
 #include <nlohmann/json.hpp>
 #include <tbb/global_control.h>
+#include <unistd.h>
 
 #include "mpm/contact_load.h"
 #include "mpm/crack_growth.h"
+#include "pipeline/run.h"
+#include "pipeline/scene.h"
 #include "tests/mpm/bodies.h"
 #include "tests/mpm/reference_step.h"
+#include "validation/problem.h"
 
 namespace {
 
 using namespace sunder;
 using namespace sunder::mpm;
+namespace fs = std::filesystem;
 
 double seconds_of(const std::function<void()>& work) {
   const auto start = std::chrono::steady_clock::now();
@@ -114,12 +121,15 @@ double reference_rate(double particles, Work work) {
 
 // ---- a plate that breaks ------------------------------------------------------------------------------------------
 
-/// Share of the crack-front rules in the step, over the steps in which the damage goes from a tenth to nine tenths of
-/// what it becomes.
-double front_rules_share() {
+struct BrokenPlate {
+  double front_rules_share = 0;  ///< of the step, while the damage goes from a tenth to nine tenths of what it becomes
+  double two_field_cost = 0;     ///< of a step of the broken plate, over that with one field
+};
+
+BrokenPlate break_plate() {
   const fixture::Body body = fixture::plate(0.1 / 46);
   const Material material = fixture::glass();
-  const mpm::Load load = fixture::steel_ball_on_glass({0.013, 0.01, -0.02}, Vec3::UnitY(), 10);
+  const Load load = fixture::steel_ball_on_glass({0.013, 0.01, -0.02}, Vec3::UnitY(), 10);
   const Partner partner{fixture::steel_ball_mass(0.01)};
   const SolveSettings settings;
   ContinuumSettings continuum;
@@ -156,7 +166,41 @@ double front_rules_share() {
     whole += s.whole;
     rules += s.rules;
   }
-  return rules / whole;
+  BrokenPlate result;
+  result.front_rules_share = rules / whole;
+  const double one_field = rate(plate, 2);
+  plate.open(cracks.new_faces(plate), settings.crack_friction);
+  result.two_field_cost = one_field / rate(plate, 2);
+  return result;
+}
+
+// ---- quality ------------------------------------------------------------------------------------------------------
+
+/// The check of a validation problem whose description begins like this.
+double checked(const std::string& id, const std::string& what) {
+  for (const auto& problem : validation::problems()) {
+    if (problem.id != id) continue;
+    for (const auto& check : problem.run().checks)
+      if (check.what.starts_with(what)) return check.value;
+  }
+  throw std::logic_error("no check '" + what + "' in problem " + id);
+}
+
+/// Largest share of a body that is damaged far from everything sound, over all fractures of the scenes that come with
+/// Sunder.
+double worst_lump_share() {
+  double worst = 0;
+  const fs::path out = fs::temp_directory_path() / ("sunder_bench_" + std::to_string(getpid()));
+  for (const auto& entry : fs::directory_iterator(fs::path(SUNDER_SOURCE_DIR) / "assets/scenes")) {
+    if (entry.path().extension() != ".toml") continue;
+    pipeline::RunOptions options;
+    options.out = out;
+    SilentProgress progress;
+    const auto result = pipeline::run(pipeline::load_scene(entry.path()), options, progress);
+    for (const auto& fracture : result.report.fractures) worst = std::max(worst, fracture.lump_share);
+    fs::remove_all(out);
+  }
+  return worst;
 }
 
 // ---- table --------------------------------------------------------------------------------------------------------
@@ -194,7 +238,14 @@ int main(int argc, char** argv) {
   table.add("rate_1m_over_16k", rate(huge, 2) / full, "", "full step, 2 threads");
   table.add("scaling_2t", rate(large, 2) / rate(large, 1), "", "128 k particles");
   table.add("bytes_per_particle", static_cast<double>(large.memory()) / large.size(), "B", "grid included");
-  table.add("front_rules_share", front_rules_share(), "", "of the step while damage grows, 20 k");
+  const BrokenPlate plate = break_plate();
+  table.add("two_field_cost", plate.two_field_cost, "", "step of a broken plate over that with one field, 20 k");
+  table.add("front_rules_share", plate.front_rules_share, "", "of the step while damage grows, 20 k");
+  const std::string energy = "energy per crack area";
+  table.add("energy_over_gf_plate", checked("B5", energy), "", "at which the edge crack of a plate runs (B5)");
+  table.add("energy_over_gf_bar", checked("B14", "energy release rate"), "",
+            "at which a double cantilever beam splits (B14)");
+  table.add("worst_lump_share", worst_lump_share(), "", "of all fractures of the scenes that come with Sunder");
   if (file.empty()) return 0;
   std::ofstream(file) << table.json.dump(2) << "\n";
   return 0;

@@ -131,7 +131,7 @@ inline double lump_share(const std::vector<Vec3>& points, const SolveResult& r, 
 inline SolveResult run(const Body& body, const Material& material, const std::vector<Load>& loads,
                        const std::vector<Partner>& partners, const SolveSettings& settings = {}) {
   SilentProgress progress;
-  return solve({body.points, body.volume, material, loads, partners, {}}, settings, progress);
+  return solve({body.points, body.volume, material, loads, partners}, settings, progress);
 }
 
 }  // namespace sunder::mpm::fixture

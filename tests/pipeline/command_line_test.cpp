@@ -87,5 +87,25 @@ TEST_F(CommandLine, AValidSceneChecksAndRuns) {
   EXPECT_TRUE(fs::exists(folder_ / "out" / "report.json"));
 }
 
+TEST_F(CommandLine, AnUnknownValidationProblemIsTwoAndNamesTheKnownOnes) {
+  const Outcome outcome = sunder({"validate", "--only", "B2", "Z9"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("'Z9'"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("A1, A2"), std::string::npos) << outcome.err;
+}
+
+TEST_F(CommandLine, AValidationProblemRunsAndWritesJson) {
+  const fs::path json = folder_ / "validation.json";
+  const Outcome outcome = sunder({"validate", "--only", "B2", "--json", json.string()});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("B2"), std::string::npos) << outcome.out;
+  std::ifstream in(json);
+  const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  for (const char* key : {"\"problems\"", "\"id\": \"B2\"", "\"title\"", "\"source\"", "\"verdict\": \"pass\"",
+                          "\"seconds\"", "\"particle_steps\"", "\"checks\"", "\"bound\""})
+    EXPECT_NE(text.find(key), std::string::npos) << key << " in " << text;
+  EXPECT_EQ(text.find("\"id\": \"B1\""), std::string::npos);
+}
+
 }  // namespace
 }  // namespace sunder::pipeline

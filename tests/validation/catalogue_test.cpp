@@ -1,10 +1,15 @@
 /// Every problem of the catalogue, as `sunder validate` runs it.
 #include <chrono>
 #include <cstdio>
+#include <ostream>
 
 #include <gtest/gtest.h>
 
 #include "validation/problem.h"
+
+namespace sunder::validation {
+void PrintTo(const Problem& problem, std::ostream* out) { *out << problem.title; }
+}  // namespace sunder::validation
 
 namespace {
 
