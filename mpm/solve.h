@@ -46,7 +46,7 @@ struct FrontSettings {
   double parallel_angle = 50;  ///< cracks whose normals differ by more do not see each other
   double ahead_reach = 1.5;    ///< how far ahead a front can pull
   double speed = 0.4;          ///< of the front, in P-wave speeds
-  double energy_factor = 0.4;  ///< k: G_f is scaled by it at the front, where the numerical tip is blunt
+  double energy_factor = 0.8;  ///< k: G_f is scaled by it at the front, where the numerical tip is blunt
 };
 
 struct SolveSettings {

@@ -302,16 +302,14 @@ Outcome double_cantilever() {
   beam.open(1.3 * DoubleCantilever::notch);
   const auto line = line_through(beam.path());
   Outcome outcome;
-  outcome.checks = {
-      relative("stiffness of the arms before the crack grows [beam theory]", beam.stiffness(), 1, 0.12),
-      // The catalogue's bound is 0.12. A crack costs half of G_f here whatever the mesh (0.50 to 0.54 with 8, 10 and 16
-      // cells in an arm) and the rate, because the law at fronts is given 0.4 of it (FrontSettings::energy_factor):
-      // with a factor of 0.7 this is 0.92.
-      relative("energy release rate while the crack grows (catalogue: 0.12) [G_f]", beam.release(), 1, 0.6),
-      relative("and when it first grows (catalogue: 0.12) [G_f]", beam.onset(), 1, 0.6),
-      within("growth of the crack [notch]", beam.growth(), 0.3, 0.5),
-      absolute("tilt of the crack [degrees]", line.tilt, 0, 3),
-      absolute("deviation of the crack [h]", line.deviation / DoubleCantilever::h, 0, 1.5)};
+  outcome.checks = {relative("stiffness of the arms before the crack grows [beam theory]", beam.stiffness(), 1, 0.12),
+                    // What FrontSettings::energy_factor is calibrated on, with B5: 0.53 at a factor of 0.4, whatever
+                    // the mesh (8, 10 and 16 cells in an arm) and the rate.
+                    relative("energy release rate while the crack grows [G_f]", beam.release(), 1, 0.12),
+                    relative("and when it first grows [G_f]", beam.onset(), 1, 0.12),
+                    within("growth of the crack [notch]", beam.growth(), 0.3, 0.5),
+                    absolute("tilt of the crack [degrees]", line.tilt, 0, 3),
+                    absolute("deviation of the crack [h]", line.deviation / DoubleCantilever::h, 0, 1.5)};
   outcome.particle_steps = beam.particle_steps();
   return outcome;
 }

@@ -95,7 +95,7 @@ TEST(FrontRules, ReportWhatTheGridDoesToTheMaterial) {
   EXPECT_NEAR(r.band_width, 2.2 * r.cell_size, 1e-15);
   EXPECT_NEAR(r.admissible_length, 0.7e-3, 1e-12);
   // sqrt(2 E k G_f / (1.1 l)).
-  EXPECT_NEAR(r.propagation_strength, std::sqrt(2 * 70e9 * 0.4 * 8 / (1.1 * r.band_width)), 1e-6);
+  EXPECT_NEAR(r.propagation_strength, std::sqrt(2 * 70e9 * FrontSettings{}.energy_factor * 8 / (1.1 * r.band_width)), 1e-6);
 }
 
 }  // namespace

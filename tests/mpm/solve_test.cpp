@@ -196,8 +196,8 @@ TEST(Solve, CracksAreThereAgainInTheNextSolve) {
   EXPECT_LT(touch.damaged_share, 1.05 * first.damaged_share);
   EXPECT_GE(touch.cracks.fronts.size(), first.cracks.fronts.size());
   // A cracked plate gives way to what a sound one bears.
-  EXPECT_EQ(hit(3, {}).failures, 0);
-  EXPECT_GT(hit(3, first.cracks).failures, 0);
+  EXPECT_EQ(hit(6, {}).failures, 0);
+  EXPECT_GT(hit(6, first.cracks).failures, 0);
 }
 
 TEST(Solve, DoesNotDependOnTheOrderOfThePoints) {
