@@ -9,5 +9,6 @@ namespace sunder::validation {
 std::vector<Problem> elasticity();  ///< A: transfers, elasticity, impact
 std::vector<Problem> damage();      ///< B1-B4: the damage law
 std::vector<Problem> fracture();    ///< B5 and on: cracks
+std::vector<Problem> contact();     ///< D: bodies and crack faces that touch
 
 }  // namespace sunder::validation

@@ -27,7 +27,8 @@ Check within(const std::string& what, double value, double least, double most) {
 const std::vector<Problem>& problems() {
   static const std::vector<Problem> all = [] {
     std::vector<Problem> list;
-    for (const auto& part : {elasticity(), damage(), fracture()}) list.insert(list.end(), part.begin(), part.end());
+    for (const auto& part : {elasticity(), damage(), fracture(), contact()})
+      list.insert(list.end(), part.begin(), part.end());
     // Ids are a letter and a number, perhaps with a variant.
     std::stable_sort(list.begin(), list.end(), [](const Problem& a, const Problem& b) {
       return std::pair(a.id[0], std::stoi(a.id.substr(1))) < std::pair(b.id[0], std::stoi(b.id.substr(1)));

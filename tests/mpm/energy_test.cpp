@@ -84,6 +84,22 @@ TEST(EnergyLedger, NothingComesFromNowhere) {
   }
 }
 
+TEST(TimeStep, EveryOneThatMayBeAskedForIsStable) {
+  for (Spline spline : {Spline::quadratic, Spline::cubic})
+    for (double cfl : {0.2, 0.5, 0.9, 1.0}) {
+      SolveSettings settings;
+      settings.cfl = cfl;
+      settings.spline = spline;
+      const SolveResult r = fixture::run(fixture::plate(), fixture::sound_glass(),
+                                         {fixture::steel_ball_on_glass({0.013, 0.01, -0.02}, Vec3::UnitY(), 10)},
+                                         {{fixture::steel_ball_mass(0.01)}}, settings);
+      // An unstable step makes energy, and soon more than there is.
+      EXPECT_GT(r.energy.balance(), 0) << cfl;
+      EXPECT_LT(r.energy.balance(), 0.15 * r.energy.work) << cfl;
+      EXPECT_EQ(r.crushed_resets, 0) << cfl;
+    }
+}
+
 TEST(StopReason, IsTheOneThatEndedIt) {
   const auto run = [](const Material& material, const SolveSettings& settings) {
     return fixture::run(fixture::plate(0.005), material,
