@@ -77,9 +77,9 @@ struct BlockSum {
   const Node* tile[8] = {};
   Node* nodes = nullptr;
   const Node* second_tile[8] = {};
-  Node* second_nodes = nullptr;   ///< null: one field
-  const Node* normals = nullptr;  ///< unit normals of the crack planes, towards the first field; zero: no plane
-  double friction = 0;            ///< Coulomb's coefficient between the fields
+  Node* second_nodes = nullptr;  ///< null: one field
+  const Node* planes = nullptr;  ///< crack planes: unit normal towards the first field, offset; zero: none
+  double friction = 0;           ///< Coulomb's coefficient between the fields
 };
 
 /// The functions of one spline. A law other than the neo-Hookean one with Rankine damage is another set of them.

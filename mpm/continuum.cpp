@@ -311,8 +311,7 @@ void Continuum::carry_velocities(const std::vector<Block>& blocks, const std::ve
                                  const std::vector<Node>& second_nodes) {
   second_nodes_.clear();
   second_tiles_.clear();
-  normals_.clear();
-  plane_offset_.clear();
+  planes_.clear();
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     const int now = find_block(blocks[b].at);
     if (now < 0) continue;
@@ -561,7 +560,7 @@ void Continuum::update_grid() {
           if (blocks_[b].planes >= 0) {
             const std::size_t first = static_cast<std::size_t>(blocks_[b].planes) * block_nodes;
             sum.second_nodes = second_nodes_.data() + first;
-            sum.normals = normals_.data() + first;
+            sum.planes = planes_.data() + first;
             sum.friction = friction_;
           }
           kernels_.sum(sum);
@@ -688,7 +687,7 @@ StoredEnergy Continuum::energy(const std::vector<Motion>& motion) const {
 
 std::size_t Continuum::memory() const {
   return chunks_.size() * sizeof(PointChunk) + slot_.size() * sizeof(int) + nodes_.size() * sizeof(Node) +
-         (tiles_.size() + second_tiles_.size() + second_nodes_.size() + normals_.size()) * sizeof(Node) +
+         (tiles_.size() + second_tiles_.size() + second_nodes_.size() + planes_.size()) * sizeof(Node) +
          table_.size() * sizeof(int) + blocks_.size() * sizeof(Block) + candidate_slots_.size() * sizeof(int) +
          passes_.size() * sizeof(BlockPass);
 }

@@ -201,8 +201,7 @@ class Continuum {
   bool cracked_ = false;
   int steps_since_division_ = 0;
   std::vector<Node> second_nodes_, second_tiles_;
-  std::vector<Node> normals_;         ///< unit normal of the crack plane of a node; zero: none
-  std::vector<double> plane_offset_;  ///< of the plane along its normal [m]
+  std::vector<Node> planes_;  ///< crack plane of a node: unit normal and offset along it [m]; zero: none
 
   std::vector<std::vector<Stray>> strays_;  ///< by block
   std::vector<BlockPass> passes_;

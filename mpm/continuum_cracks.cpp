@@ -1,4 +1,5 @@
 /// The second velocity field of a continuum: which nodes belong to both sides of a crack, and which particles to which.
+#include <algorithm>
 #include <cmath>
 
 #include <tbb/parallel_for.h>
@@ -66,9 +67,8 @@ Vec3 Continuum::mean_displacement(const Block& block) const {
 }
 
 void Continuum::add_planes(int block) {
-  blocks_[static_cast<std::size_t>(block)].planes = static_cast<int>(normals_.size()) / block_nodes;
-  normals_.resize(normals_.size() + block_nodes, Node{});
-  plane_offset_.resize(plane_offset_.size() + block_nodes, 0);
+  blocks_[static_cast<std::size_t>(block)].planes = static_cast<int>(planes_.size()) / block_nodes;
+  planes_.resize(planes_.size() + block_nodes, Node{});
   // Until now the two fields moved as one.
   const auto first = nodes_.begin() + static_cast<std::ptrdiff_t>(block) * block_nodes;
   second_nodes_.insert(second_nodes_.end(), first, first + block_nodes);
@@ -109,12 +109,8 @@ void Continuum::find_planes(const FaceBins& near, std::vector<bool>& changed) {
     changed[b] = true;
     if (found[b].any && blocks_[b].planes < 0) add_planes(static_cast<int>(b));
     if (blocks_[b].planes < 0) continue;
-    for (std::size_t n = 0; n < block_nodes; ++n) {
-      const std::size_t to = static_cast<std::size_t>(blocks_[b].planes) * block_nodes + n;
-      const double* p = found[b].plane[n].value;
-      normals_[to] = {{p[0], p[1], p[2], 0}};
-      plane_offset_[to] = p[3];
-    }
+    std::copy(found[b].plane.begin(), found[b].plane.end(),
+              planes_.begin() + static_cast<std::ptrdiff_t>(blocks_[b].planes) * block_nodes);
   }
 }
 
@@ -131,8 +127,8 @@ bool Continuum::behind(int block, int local, const Vec3& x) const {
   const int planes = blocks_[static_cast<std::size_t>(block)].planes;
   if (planes < 0) return false;
   const std::size_t node = static_cast<std::size_t>(planes * block_nodes + local);
-  const double* n = normals_[node].value;
-  return n[0] * x[0] + n[1] * x[1] + n[2] * x[2] < plane_offset_[node];
+  const double* plane = planes_[node].value;
+  return plane[0] * x[0] + plane[1] * x[1] + plane[2] * x[2] < plane[3];
 }
 
 unsigned long long Continuum::sides(const int cell[3], const Vec3& material_position) const {

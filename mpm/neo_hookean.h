@@ -1,6 +1,6 @@
 #pragma once
-/// Compressible neo-Hookean solid in terms of H = F - I, so that strains of 1e-6 keep all their digits. In the header
-/// because every particle asks in every step.
+/// Compressible neo-Hookean solid in terms of H = F - I, so that strains of 1e-6 keep all their digits.
+/// mpm/detail/lane_laws.h is the same for several particles at once.
 #include <cmath>
 
 #include "core/types.h"

@@ -1,7 +1,5 @@
 #pragma once
 /// Rankine damage with linear softening: c grows with the largest principal stress ever reached.
-#include <cmath>
-
 #include "core/types.h"
 
 namespace sunder::mpm {
@@ -47,14 +45,6 @@ struct LargestPrincipalStress {
   Vec3 direction;
 };
 LargestPrincipalStress largest_principal_stress(const Mat3& cauchy_stress);
-
-/// Upper bound of the largest principal stress, mean + 2 sqrt(J2 / 3), without an eigen-decomposition.
-inline double principal_stress_bound(const Mat3& s) {
-  const double mean = s.trace() / 3;
-  const double x = s(0, 0) - mean, y = s(1, 1) - mean, z = s(2, 2) - mean;
-  const double j2 = 0.5 * (x * x + y * y + z * z) + s(0, 1) * s(0, 1) + s(0, 2) * s(0, 2) + s(1, 2) * s(1, 2);
-  return mean + 2 * std::sqrt(j2 / 3);
-}
 
 /// (1 - c) sigma+ + sigma-: tension is damaged, compression carries on. Fan (2024) eq. 2.30.
 Mat3 damaged_stress(const PrincipalStress& effective, double damage);

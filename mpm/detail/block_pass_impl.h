@@ -469,6 +469,7 @@ inline double dot(Quad a, Quad b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[
 /// eq. 3.7 prints the sign of separation and eq. 3.6 a normal that is not a unit vector.
 inline void make_contact(Quad n, double friction, Quad& first, Quad& second) {
   const double m1 = first[3], m2 = second[3], reduced = m1 * m2 / (m1 + m2);
+  n[3] = 0;
   Quad relative = first - second;
   relative[3] = 0;
   const double approach = -dot(relative, n);
@@ -478,7 +479,6 @@ inline void make_contact(Quad n, double friction, Quad& first, Quad& second) {
   const double speed = __builtin_sqrt(dot(slide, slide)), most = friction * approach;
   Quad impulse = reduced * approach * n;
   if (speed > 0) impulse -= reduced * (speed < most ? speed : most) / speed * slide;
-  impulse[3] = 0;
   first += impulse / m1;
   second -= impulse / m2;
 }
@@ -494,7 +494,7 @@ void run_sum(const BlockSum& block) {
     for (int n = 0; n < block_nodes; ++n) {
       const bool behind = has_mass(second[n]), before = has_mass(first[n]);
       second[n] = velocity_of(second[n]);
-      if (behind && before) make_contact(load_quad(block.normals[n].value), block.friction, first[n], second[n]);
+      if (behind && before) make_contact(load_quad(block.planes[n].value), block.friction, first[n], second[n]);
       // A field without material moves with the other one, should a point come to it.
       else if (behind)
         first[n] = second[n] * Quad{1, 1, 1, 0};

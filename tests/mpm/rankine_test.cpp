@@ -85,16 +85,6 @@ TEST(LargestPrincipalStress, OfEqualValuesIsAnyDirectionAcrossTheThird) {
   }
 }
 
-TEST(PrincipalStressBound, IsNeverBelowTheLargest) {
-  for (std::uint64_t n = 0; n < 2000; ++n) {
-    const Mat3 s = random_stress(n);
-    const double largest = principal_stress(s).value[2];
-    EXPECT_GE(principal_stress_bound(s), largest * (1 - 1e-12) - 1e-6);
-  }
-  // Reached in uniaxial tension.
-  EXPECT_NEAR(principal_stress_bound(Vec3(5, 0, 0).asDiagonal()), 5, 1e-14);
-}
-
 TEST(DamagedStress, TakesAwayTensionOnly) {
   for (std::uint64_t n = 0; n < 200; ++n) {
     const Mat3 s = random_stress(n);
