@@ -44,9 +44,11 @@ struct alignas(64) Place {
   /// `position` in cells from the lowest node of the block.
   void set(const Lanes position[3]) {
     // Truncation is the floor where the argument is positive.
-    constexpr int bias = 1024;
+    constexpr unsigned bias = 1024;
     for (int a = 0; a < 3; ++a) {
-      const IntLanes low = __builtin_convertvector(position[a] + (bias - stencil_shift(S::name)), IntLanes) - bias;
+      const IntLanes truncated = __builtin_convertvector(position[a] + (bias - stencil_shift(S::name)), IntLanes);
+      // Unsigned: what is not a number converts to the least integer.
+      const IntLanes low = reinterpret_cast<IntLanes>(reinterpret_cast<CountLanes>(truncated) - bias);
       const Lanes o = position[a] - __builtin_convertvector(low, Lanes) - 1.0;
       *reinterpret_cast<IntLanes*>(base[a]) = low;
       store(offset[a], o);

@@ -18,6 +18,7 @@ constexpr int width = 4;
 using Lanes = double __attribute__((vector_size(8 * width), may_alias));
 using Mask = long long __attribute__((vector_size(8 * width), may_alias));
 using IntLanes = int __attribute__((vector_size(4 * width), may_alias));
+using CountLanes = unsigned __attribute__((vector_size(4 * width), may_alias));
 /// Three components of a vector and one number more, of one point or node.
 using Quad = double __attribute__((vector_size(32), may_alias));
 
