@@ -146,11 +146,21 @@ class Continuum {
     double since;
   };
 
+  // The grid: continuum_grid.cpp.
   void sort();
   void take_out_escaped();
   void lay_table(const std::vector<std::array<int, 3>>& blocks);
   void carry_velocities(const std::vector<Block>& blocks, const std::vector<Node>& nodes,
                         const std::vector<Node>& second_nodes);
+  std::array<int, 3> block_of(const Vec3& position) const;
+  int table_index(const std::array<int, 3>& block) const;
+  int find_block(const std::array<int, 3>& block) const;
+  std::pair<int, int> find_node(const std::array<int, 3>& at) const;
+  int make_block(const std::array<int, 3>& block);
+  void make_blocks_above(const std::array<int, 3>& block);
+  Node* fresh_tile(int& index, bool& live, std::vector<Node>& tiles) const;
+  void find_held_nodes();
+  void hold_nodes();
   // Two fields: continuum_cracks.cpp.
   using FaceBins = MaterialBins<std::vector<CrackFace>>;
   void divide(const FaceBins& near);
@@ -162,18 +172,9 @@ class Continuum {
   Vec3 mean_displacement(const Block& block) const;
   unsigned long long sides(const int cell[3], const Vec3& material_position) const;
   bool behind(int block, int local, const Vec3& material_position) const;
-  Node* second_tile(int block);
-  Node* first_tile(int block);
-  std::pair<int, int> find_node(const std::array<int, 3>& at) const;
-  std::array<int, 3> block_of(const Vec3& position) const;
-  int table_index(const std::array<int, 3>& block) const;
-  int find_block(const std::array<int, 3>& block) const;
-  int make_block(const std::array<int, 3>& block);
-  void make_blocks_above(const std::array<int, 3>& block);
-  void find_held_nodes();
+  // The step: continuum.cpp.
   void run(void (*pass)(const StepConstants&, const StepHandler&, BlockPass&), std::vector<MotionChunk>* motion);
   void scatter(const Stray& stray);
-  void hold_nodes();
   void require_finite() const;
   Stray stencil(int id) const;
   void gather(const Stray& stray, Node sums[4]) const;

@@ -166,17 +166,4 @@ void Continuum::find_sides(const std::vector<bool>& changed) {
   }
 }
 
-Node* Continuum::second_tile(int block) {
-  const std::size_t size = static_cast<std::size_t>(tile_nodes(settings_.spline));
-  Block& home = blocks_[static_cast<std::size_t>(block)];
-  if (home.second_tile < 0) {
-    home.second_tile = static_cast<int>(second_tiles_.size() / size);
-    second_tiles_.resize(second_tiles_.size() + size);
-  }
-  Node* tile = second_tiles_.data() + static_cast<std::size_t>(home.second_tile) * size;
-  if (!home.second_live) std::fill_n(tile, size, Node{});
-  home.second_live = true;
-  return tile;
-}
-
 }  // namespace sunder::mpm

@@ -26,12 +26,6 @@ Softening law_of(const Material& m, const SolveSettings& settings, double cell_s
                         CoarseGrid::lower_strength);
 }
 
-Box box_of(const std::vector<Vec3>& points) {
-  Box box;
-  for (const Vec3& x : points) box.extend(x);
-  return box;
-}
-
 /// The law scaled to another strength at the same energy. Scatter beyond what it can carry would make its slope
 /// negative.
 Softening scattered(const Softening& law, double factor) {

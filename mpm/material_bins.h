@@ -8,6 +8,12 @@
 
 namespace sunder::mpm {
 
+inline Box box_of(const std::vector<Vec3>& points) {
+  Box box;
+  for (const Vec3& x : points) box.extend(x);
+  return box;
+}
+
 /// One bin per cube of material space.
 template <class Bin>
 class MaterialBins {

@@ -82,12 +82,6 @@ struct PartnerMotion {
   Vec3 displacement = Vec3::Zero(), velocity = Vec3::Zero();
 };
 
-Box box_of(const std::vector<Vec3>& points) {
-  Box box;
-  for (const Vec3& x : points) box.extend(x);
-  return box;
-}
-
 /// Numbers of a solve that follow from its input.
 struct Scales {
   double particle_volume, cell_size, wave_speed, time_step, transit;

@@ -163,7 +163,7 @@ EdgeCrack pull_edge_crack(const EdgeCrackSettings& wanted) {
 }
 
 /// B5. Tada's plate is pulled by tractions: its ends may turn. No front factor gives G_f here and in the double
-/// cantilever of B14 at once; at 0.8 the plate is at 0.7 to 0.87 of it (48 to 96 cells) and the
+/// cantilever of B14 at once; at 0.8 the plate is at 0.67 to 0.87 of it (48 to 96 cells) and the
 /// cantilever at 0.9 to 1.1.
 Outcome edge_crack() {
   Outcome outcome;

@@ -28,9 +28,7 @@ mpm::ContinuumSettings continuum(const Lattice& lattice, const mpm::Material& m,
   result.time_step = settings.solve.cfl * lattice.cell_size / m.p_wave_speed();
   result.viscosity = settings.viscosity * m.density * m.p_wave_speed() * lattice.cell_size;
   result.spline = settings.solve.spline;
-  Box box;
-  for (const Vec3& x : lattice.points) box.extend(x);
-  result.anchor = settings.anchor.value_or(box.min());
+  result.anchor = settings.anchor.value_or(mpm::box_of(lattice.points).min());
   return result;
 }
 
