@@ -1,12 +1,14 @@
 #include "crack/extract.h"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
 
-#include "crack/detail/bins.h"
 #include "crack/detail/classify.h"
-#include "crack/detail/islands.h"
+#include "crack/detail/debris.h"
 #include "crack/detail/medial.h"
+#include "crack/detail/sites.h"
 
 namespace sunder::crack {
 
@@ -16,48 +18,67 @@ constexpr double margin = 0.1;           // of the domain's diagonal, on every s
 constexpr double shortest_edge = 1e-10;  // of the domain's diagonal: what geometry::cut can tell from nothing
 constexpr double closing_gain = 1.02;    // neck closing roughens surfaces: it has to make more pieces by so much
 constexpr double lump_depth = 1.5;       // in cell sizes
+constexpr double usual_spacing = 0.8;    // of nodes, in spacings of the points
+constexpr double finest = 0.75;          // in spacings of the points: finer lattices have nodes without points
+constexpr double side_distance = 1.5;    // in node spacings: sites on the two sides of a crack are farther apart
 
 using namespace detail;
 
-void check(const DamageField& field, const Box& domain) {
-  if (field.points.size() != field.damage.size())
-    throw Error(ErrorKind::internal, "crack: " + std::to_string(field.points.size()) + " points but " +
-                                         std::to_string(field.damage.size()) + " damage values");
-  if (!(field.spacing > 0) || !(field.cell_size > 0))
-    throw Error(ErrorKind::internal, "crack: spacing and cell size must be positive");
-  if (domain.isEmpty()) throw Error(ErrorKind::internal, "crack: the domain is empty");
+void check(const DamageField& field, const Box& domain, const Settings& settings) {
+  const auto require = [](bool holds, const std::string& what) {
+    if (!holds) throw Error(ErrorKind::internal, "crack: " + what);
+  };
+  require(field.points.size() == field.damage.size(), std::to_string(field.points.size()) + " points but " +
+                                                          std::to_string(field.damage.size()) + " damage values");
+  require(field.damage_time.empty() || field.damage_time.size() == field.points.size(),
+          "damage times do not fit the points");
+  require(field.spacing > 0 && field.cell_size > 0, "spacing and cell size must be positive");
+  require(!domain.isEmpty(), "the domain is empty");
   for (std::size_t i = 0; i < field.points.size(); ++i)
     if (!field.points[i].allFinite() || std::isnan(field.damage[i]))
-      throw Error(ErrorKind::internal, "crack: point " + std::to_string(i) + " is not finite");
+      require(false, "point " + std::to_string(i) + " is not finite");
+  if (settings.node_spacing != 0 && !(settings.node_spacing >= finest * field.spacing))
+    throw Error(ErrorKind::usage, "crack: a node spacing of " + std::to_string(settings.node_spacing) +
+                                      " m is finer than the points; make it at least " +
+                                      std::to_string(finest * field.spacing) + " m");
 }
 
-std::vector<int> indices_of(const std::vector<char>& marks, bool marked) {
+void check(const Extraction& earlier, const DamageField& field, const Lattice& lattice) {
+  const auto fits = [&](const Anchor& anchor) {
+    return anchor.node >= 0 && anchor.node < lattice.count() && anchor.lattice >= 0 &&
+           anchor.lattice < lattice.positions();
+  };
+  if (earlier.region.size() != field.points.size() ||
+      !std::all_of(earlier.anchors.begin(), earlier.anchors.end(), fits))
+    throw Error(ErrorKind::internal, "crack: the earlier extraction is one of another body");
+}
+
+/// Per region: the one of the earlier extraction that most of its points were in.
+std::vector<int> earlier_regions(const std::vector<int>& region, const std::vector<int>& earlier, int count) {
+  std::vector<std::map<int, int>> votes(static_cast<std::size_t>(count));
+  for (std::size_t p = 0; p < region.size(); ++p) ++votes[static_cast<std::size_t>(region[p])][earlier[p]];
   std::vector<int> result;
-  for (int i = 0; i < static_cast<int>(marks.size()); ++i)
-    if ((marks[i] != 0) == marked) result.push_back(i);
+  for (const std::map<int, int>& vote : votes) {
+    const auto most =
+        std::max_element(vote.begin(), vote.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+    result.push_back(most == vote.end() ? -1 : most->first);
+  }
   return result;
 }
 
-std::vector<char> sound_points(const DamageField& field, double crack_damage) {
-  std::vector<char> sound(field.points.size());
-  for (std::size_t i = 0; i < sound.size(); ++i) sound[i] = field.damage[i] < crack_damage;
-  return sound;
+double damaged_share(const DamageField& field, double crack_damage) {
+  const long damaged =
+      std::count_if(field.damage.begin(), field.damage.end(), [&](double c) { return c >= crack_damage; });
+  return field.damage.empty() ? 0 : static_cast<double>(damaged) / static_cast<double>(field.damage.size());
 }
 
-/// The sound points without those near damage: necks, and the borders of everything else.
-std::vector<char> eroded(const DamageField& field, const std::vector<char>& sound, double radius) {
-  const PointBins damaged(field.points, indices_of(sound, false), std::max(radius, field.spacing));
+/// The sound nodes without those near damage: necks, and the borders of everything else.
+std::vector<char> eroded(const Lattice& lattice, const std::vector<char>& sound, double radius) {
   std::vector<char> result = sound;
-  for (std::size_t i = 0; i < sound.size(); ++i)
-    if (sound[i] && damaged.any_within(field.points[i], radius)) result[i] = 0;
+  for (char& mark : result) mark = !mark;
+  result = dilated(lattice, result, radius);
+  for (char& mark : result) mark = !mark;
   return result;
-}
-
-double lump_share(const DamageField& field, const std::vector<char>& sound) {
-  const PointBins near(field.points, indices_of(sound, true), field.cell_size);
-  int deep = 0;
-  for (int i : indices_of(sound, false)) deep += !near.any_within(field.points[i], lump_depth * field.cell_size);
-  return static_cast<double>(deep) / static_cast<double>(sound.size());
 }
 
 struct Choice {
@@ -66,78 +87,59 @@ struct Choice {
 };
 
 /// With and without neck closing, whichever makes more pieces.
-Choice choose_partition(const DamageField& field, const LinkGraph& links, const std::vector<char>& sound,
-                        const Settings& settings) {
-  const int smallest =
-      std::max(settings.smallest_points,
-               static_cast<int>(std::ceil(settings.smallest_share * static_cast<double>(field.points.size()))));
-  Choice plain{partition(field.points, links, sound, smallest, field.spacing), 0};
-  if (!settings.close_necks || !(settings.neck_radius > 0)) return plain;
-  const std::vector<char> solid = eroded(field, sound, settings.neck_radius * field.cell_size);
-  Choice closed{partition(field.points, links, solid, smallest, field.spacing), settings.neck_radius};
-  return closed.partition.effective_count > closing_gain * plain.partition.effective_count ? closed : plain;
-}
-
-/// The points that at most `hops` links part from one that is on no island.
-std::vector<char> near_border(const LinkGraph& links, const Partition& pieces, int hops) {
-  std::vector<char> near(pieces.is_island.size());
-  for (std::size_t i = 0; i < near.size(); ++i) near[i] = !pieces.is_island[i];
-  for (int hop = 0; hop < hops; ++hop)
-    for (const std::vector<char> before = near; int i : indices_of(before, true))
-      for (int e = links.start[i]; e < links.start[i + 1]; ++e) near[links.neighbour[e]] = 1;
-  return near;
-}
-
-/// Island points, and the points astray: they keep another limb's cells off. Of a single piece only those that partial
-/// cracks need: the points beside damage, and one layer behind them that keeps cells from reaching through the body.
-std::vector<Site> choose_sites(const DamageField& field, const LinkGraph& links, const Partition& pieces) {
-  std::vector<Site> sites;
-  if (pieces.count == 0) return sites;
-  const std::vector<char> near = near_border(links, pieces, 2);
-  for (int i = 0; i < static_cast<int>(field.points.size()); ++i)
-    if ((pieces.is_island[i] || pieces.is_astray[i]) && (pieces.count > 1 || near[i]))
-      sites.push_back({field.points[i], pieces.piece[i], i});
-  return sites;
-}
-
-/// Does a way of two links over an island point join two points?
-bool joined_by_two(const LinkGraph& links, const Partition& pieces, int a, int b) {
-  for (int i = links.start[a], j = links.start[b]; i < links.start[a + 1] && j < links.start[b + 1];) {
-    const int from_a = links.neighbour[i], from_b = links.neighbour[j];
-    if (from_a == from_b && pieces.is_island[from_a]) return true;
-    i += from_a <= from_b;
-    j += from_b <= from_a;
+Choice choose_partition(const Lattice& lattice, const std::vector<char>& sound, const IslandRequest& request,
+                        double radius) {
+  Choice best{find_islands(lattice, sound, request), 0};
+  if (radius > 0) {
+    Partition closed = find_islands(lattice, eroded(lattice, sound, radius), request);
+    if (effective_count(closed) > closing_gain * effective_count(best.partition)) best = {std::move(closed), radius};
   }
-  return false;
+  flood_from_islands(lattice, best.partition);
+  return best;
 }
 
-/// Sites of one piece that a way of at most three links over island points joins are neighbours on a rough side of a
-/// crack; those that none joins lie on its two sides.
-bool on_one_side(const LinkGraph& links, const Partition& pieces, int a, int b) {
-  if (joined_by_two(links, pieces, a, b)) return true;
-  for (int e = links.start[a]; e < links.start[a + 1]; ++e)
-    if (pieces.is_island[links.neighbour[e]] && joined_by_two(links, pieces, links.neighbour[e], b)) return true;
-  return false;
+int smallest_island(const Lattice& lattice, const Settings& settings) {
+  return std::max(settings.smallest_nodes,
+                  static_cast<int>(std::ceil(settings.smallest_share * static_cast<double>(lattice.count()))));
 }
 
-std::vector<CrackFace> crack_faces(const DamageField& field, const std::vector<int>& damaged, const LinkGraph& links,
-                                   const Partition& pieces, const std::vector<Site>& sites, const CellFaces& cells) {
-  const DamageBetween damage_between(field.points, damaged, field.spacing);
+/// The piece of the node nearest to every point. Pieces are renumbered by their lowest point, so that their numbers do
+/// not depend on how the lattice lies.
+std::vector<int> regions_of_points(const DamageField& field, const Lattice& lattice, Partition& pieces) {
+  std::vector<int> number(static_cast<std::size_t>(pieces.count), -1), region;
+  int next = 0;
+  region.reserve(field.points.size());
+  for (const Vec3& x : field.points) {
+    const int piece = pieces.piece[static_cast<std::size_t>(lattice.node_at(lattice.nearest(x)))];
+    int& renumbered = number[static_cast<std::size_t>(piece)];
+    if (renumbered < 0) renumbered = next++;
+    region.push_back(renumbered);
+  }
+  for (int& renumbered : number)
+    if (renumbered < 0) renumbered = next++;
+  for (int& piece : pieces.piece) piece = number[static_cast<std::size_t>(piece)];
+  return region;
+}
+
+std::vector<CrackFace> crack_faces(const Raster& raster, const std::vector<Site>& sites, const CellFaces& cells,
+                                   double crack_damage) {
   std::vector<CrackFace> faces;
-  const auto has_damage = [&](int a, int b) { return damage_between(sites[a].position, sites[b].position); };
-  for (const CellFace& face : cells.faces) {
-    if (face.neighbour < 0) continue;
-    CrackFace& crack = faces.emplace_back();
-    for (int v : face.loop) crack.polygon.push_back(cells.vertices[v]);
-    crack.kind = has_damage(face.site, face.neighbour) ? FaceKind::interior : FaceKind::extension;
-    crack.point_a = sites[face.site].point;
-    crack.point_b = sites[face.neighbour].point;
-  }
-  for (const InnerFace& face : cells.inner) {
-    const int a = sites[face.site].point, b = sites[face.neighbour].point;
-    if (has_damage(face.site, face.neighbour) && !on_one_side(links, pieces, a, b))
-      faces.push_back({face.polygon, FaceKind::partial, a, b});
-  }
+  const auto add = [&](const CellFace& face, FaceKind kind) {
+    Vec3 middle = Vec3::Zero();
+    for (const int v : face.loop) middle += cells.vertices[v] / static_cast<double>(face.loop.size());
+    faces.push_back(
+        {face.loop, kind, sites[face.site].piece, sites[face.neighbour].piece, damage_time_at(raster, middle)});
+  };
+  const auto has_damage = [&](const CellFace& face) {
+    return damage_between(raster, sites[face.site].position, sites[face.neighbour].position, crack_damage);
+  };
+  const auto one_side = [&](const CellFace& face) {
+    return on_one_side(raster, sites[face.site].node, sites[face.neighbour].node, crack_damage);
+  };
+  for (const CellFace& face : cells.faces)
+    if (face.neighbour >= 0) add(face, has_damage(face) ? FaceKind::interior : FaceKind::extension);
+  for (const CellFace& face : cells.inner)
+    if (has_damage(face) && !one_side(face)) add(face, FaceKind::partial);
   return faces;
 }
 
@@ -147,43 +149,61 @@ Box enlarged(const DamageField& field, Box domain) {
   return {domain.min() - Vec3::Constant(by), domain.max() + Vec3::Constant(by)};
 }
 
-MedialRequest medial_request(const DamageField& field, const Box& domain, const Settings& settings, int pieces) {
+MedialRequest medial_request(const DamageField& field, const Box& domain, const Settings& settings, double spacing,
+                             int pieces) {
   const double diagonal = domain.diagonal().norm();
   const CellRequest cells{.box = enlarged(field, domain),
-                          .unit = field.spacing,
+                          .unit = spacing,
                           .shortest_edge = shortest_edge * diagonal,
-                          .inner_distance = settings.link * field.spacing,
+                          .inner_distance = side_distance * spacing,
                           .pieces = pieces > 1};
   return {.cells = cells, .pieces = pieces, .jitter = settings.jitter * diagonal, .seed = settings.seed};
 }
 
 }  // namespace
 
-Extraction extract(const DamageField& field, const Box& domain, const Settings& settings, Progress& progress) {
-  check(field, domain);
+Extraction extract(const DamageField& field, const Box& domain, const Settings& settings, Progress& progress,
+                   const Extraction* earlier) {
+  check(field, domain, settings);
   Extraction result;
   result.region.assign(field.points.size(), 0);
-  const std::vector<char> sound = sound_points(field, settings.crack_damage);
-  const std::vector<int> damaged = indices_of(sound, false);
-  if (damaged.empty()) return result;
-  result.damaged_share = static_cast<double>(damaged.size()) / static_cast<double>(sound.size());
-  result.lump_share = lump_share(field, sound);
+  result.damaged_share = damaged_share(field, settings.crack_damage);
+  if (result.damaged_share == 0) return result;
 
   progress.checkpoint("extract", 0.1);
-  const LinkGraph links = link_graph(field.points, settings.link * field.spacing);
-  const auto [pieces, neck_radius] = choose_partition(field, links, sound, settings);
-  result.neck_radius_used = neck_radius;
+  const double spacing = settings.node_spacing > 0 ? settings.node_spacing : usual_spacing * field.spacing;
+  const Raster raster = rasterise(field, domain, spacing, settings.crack_damage);
+  if (earlier) check(*earlier, field, raster.lattice);
+  const Crushed crushed = find_crushed(raster, settings.node_damage);
+  result.lump_share = lump_share(raster.lattice, crushed, lump_depth * field.cell_size / spacing);
+  IslandRequest islands{smallest_island(raster.lattice, settings), {}};
+  if (settings.debris_size > 0)
+    islands.seeds = debris_seeds(raster.lattice, crushed, settings.debris_size / spacing, settings.seed);
+  const double neck = settings.close_necks ? settings.neck_radius * field.cell_size / spacing : 0;
+  auto [pieces, neck_radius] = choose_partition(raster.lattice, crushed.sound, islands, neck);
+  if (neck_radius > 0) result.neck_radius_used = settings.neck_radius;
   if (pieces.count > 1) {
     result.region_count = pieces.count;
-    result.region = pieces.piece;
-    result.effective_count = pieces.effective_count;
+    result.debris = static_cast<int>(islands.seeds.size());
+    result.region = regions_of_points(field, raster.lattice, pieces);
+    result.effective_count = effective_count(pieces);
   }
+  if (pieces.count == 0) return result;
 
-  const std::vector<Site> sites = choose_sites(field, links, pieces);
-  Medial medial = medial_faces(sites, medial_request(field, domain, settings, pieces.count), progress);
+  SiteRequest request{settings.node_damage, islands.seeds, {}, {}};
+  if (earlier) {
+    request.anchors = earlier->anchors;
+    request.earlier_region = earlier_regions(result.region, earlier->region, pieces.count);
+  }
+  const std::vector<Site> sites = choose_sites(raster, pieces, request);
+  Medial medial = medial_faces(sites, medial_request(field, domain, settings, spacing, pieces.count), progress);
+  result.sites = static_cast<long>(sites.size());
   result.retries = medial.retries;
-  result.faces = crack_faces(field, damaged, links, pieces, sites, medial.cells);
+  result.faces = crack_faces(raster, sites, medial.cells, settings.node_damage);
   result.boundary = std::move(medial.boundary);
+  result.vertices = std::move(medial.cells.vertices);
+  for (const Site& site : sites)
+    if (site.is_border) result.anchors.push_back({site.lattice, site.node, site.position, site.piece});
   progress.report("extract", 1);
   return result;
 }

@@ -42,8 +42,11 @@ Vec3 surface_point(const geometry::Samples& samples, const mpm::Load& load) {
 }
 
 crack::DamageField damage_field(const geometry::Samples& samples, const mpm::SolveResult& solve) {
-  crack::DamageField field{samples.points, {}, samples.spacing, solve.cell_size};
-  for (const mpm::ParticleState& p : solve.particles) field.damage.push_back(p.damage);
+  crack::DamageField field{samples.points, {}, {}, samples.spacing, solve.cell_size};
+  for (const mpm::ParticleState& p : solve.particles) {
+    field.damage.push_back(p.damage);
+    field.damage_time.push_back(p.damage_time);
+  }
   return field;
 }
 

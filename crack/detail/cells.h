@@ -11,7 +11,9 @@ namespace sunder::crack::detail {
 struct Site {
   Vec3 position;
   int piece = 0;
-  int point = 0;  ///< index in the damage field
+  int lattice = 0;         ///< its position on the lattice: no other site has it
+  int node = 0;            ///< of the body: itself, or the one that it continues beyond the surface
+  bool is_border = false;  ///< beside damage or beside another piece
 };
 
 /// The face that two cells share, or a cell shares with a wall of the box.
@@ -21,17 +23,10 @@ struct CellFace {
   std::vector<int> loop;  ///< vertices, counter-clockwise seen from the neighbour
 };
 
-/// A face within a piece, with its own copy of the corners.
-struct InnerFace {
-  int site = 0;
-  int neighbour = 0;  ///< a higher site
-  std::vector<Vec3> polygon;
-};
-
 struct CellFaces {
   std::vector<Vec3> vertices;
-  std::vector<CellFace> faces;   ///< between sites of different pieces and on walls, by (site, neighbour)
-  std::vector<InnerFace> inner;  ///< between sites of one piece that are farther apart than asked
+  std::vector<CellFace> faces;  ///< between sites of different pieces and on walls, by (site, neighbour)
+  std::vector<CellFace> inner;  ///< between border sites of one piece that are farther apart than asked
 };
 
 struct CellRequest {
@@ -42,9 +37,10 @@ struct CellRequest {
   bool pieces = true;         ///< false: inner faces only
 };
 
-/// Cells by Voro++ (Rycroft 2009). Every cell has its own rounded copy of a vertex; what makes them one is the set of
-/// the four cells or walls that meet there, and its position is the one that the lowest site gives it. Nothing where
-/// that fails: more than four meet, two cells disagree about the face between them, an edge is too short.
+/// Cells by Voro++ (Rycroft 2009), on all threads; the result does not depend on how many there are. Every cell has its
+/// own rounded copy of a vertex; what makes them one is the set of the four cells or walls that meet there, and its
+/// position is the one that the lowest site gives it. Nothing where that fails: more than four meet, two cells disagree
+/// about the face between them, an edge is too short.
 std::optional<CellFaces> cell_faces(const std::vector<Site>& sites, const CellRequest& request);
 
 }  // namespace sunder::crack::detail

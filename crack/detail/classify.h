@@ -1,26 +1,18 @@
 #pragma once
-/// What a medial face is: does damage lie between its two sites?
-#include <vector>
-
-#include "core/types.h"
-#include "crack/detail/bins.h"
+/// What a medial face is: does damage lie between its two sites, and since when?
+#include "crack/detail/lattice.h"
 
 namespace sunder::crack::detail {
 
-/// Answers whether some damaged point lies beside the segment between two sites, at most `reach` spacings away from it.
-class DamageBetween {
- public:
-  /// In spacings: a sheet of a single layer of points has no gaps that let a segment through.
-  static constexpr double reach = 0.75;
+/// Does damage fill the whole segment between two sites, but for half a spacing at either end where the sites stand?
+/// Trilinear in the raster; what is outside the body is not damaged.
+bool damage_between(const Raster& raster, const Vec3& a, const Vec3& b, double crack_damage);
 
-  DamageBetween(const std::vector<Vec3>& points, const std::vector<int>& damaged, double spacing);
+/// Mean of the nodes around that know theirs; -1 if none does.
+double damage_time_at(const Raster& raster, const Vec3& x);
 
-  bool operator()(const Vec3& a, const Vec3& b) const;
-
- private:
-  const std::vector<Vec3>& points_;
-  PointBins bins_;
-  double spacing_;
-};
+/// Does a way of at most three links over sound nodes join two nodes? Then they are neighbours on a rough side of a
+/// crack; sites of one piece that none joins lie on its two sides.
+bool on_one_side(const Raster& raster, int node_a, int node_b, double crack_damage);
 
 }  // namespace sunder::crack::detail

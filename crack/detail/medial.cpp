@@ -11,12 +11,12 @@ namespace {
 
 constexpr int most_tries = 8;
 
-/// Every site displaced at random by up to `size` [m] along each axis, by its point's number.
+/// Every site displaced at random by up to `size` [m] along each axis, by its place on the lattice.
 std::vector<Site> jittered(std::vector<Site> sites, double size, std::uint64_t seed, int attempt) {
   for (Site& site : sites)
     for (int axis = 0; axis < 3; ++axis) {
       const std::uint64_t stream = 3 * static_cast<std::uint64_t>(attempt) + axis;
-      site.position[axis] += size * (2 * random_unit(seed, stream, site.point) - 1);
+      site.position[axis] += size * (2 * random_unit(seed, stream, site.lattice) - 1);
     }
   return sites;
 }

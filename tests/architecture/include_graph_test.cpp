@@ -30,7 +30,7 @@ const std::map<std::string, std::set<std::string>> libraries = {
     {"core", {}},
     {"geometry", {"CGAL", "openvdb", "assimp", "boost", "tbb"}},
     {"mpm", {"tbb"}},
-    {"crack", {"voro++"}},
+    {"crack", {"voro++", "tbb"}},
     {"rigid",
      {"btBulletDynamicsCommon.h", "btBulletCollisionCommon.h", "BulletCollision", "BulletDynamics", "LinearMath"}},
     {"validation", {}},

@@ -100,7 +100,7 @@ TEST(Slot, TwoSpacingsWideSeparates) {
   EXPECT_GT(count(result, FaceKind::extension), 0);
   for (const CrackFace& face : result.faces) {
     Vec3 middle = Vec3::Zero();
-    for (const Vec3& x : face.polygon) middle += x / static_cast<double>(face.polygon.size());
+    for (const Vec3& x : polygon_of(result, face)) middle += x / static_cast<double>(face.loop.size());
     if (middle.z() > 0.3 + 2 * h && middle.z() < 1) {
       EXPECT_EQ(face.kind, FaceKind::extension);
     }

@@ -99,8 +99,9 @@ TEST_P(Junction, MeetsInLinesOfThreeFacesNearTheAxis) {
   EXPECT_TRUE(edges_of(boundary, 4).empty());
   const std::vector<Vec3> line = edges_of(boundary, 3);
   ASSERT_FALSE(line.empty());
-  // C3 gives one spacing for three sheets; four part into two lines, which wander as far as the damaged core is wide.
-  const double bound = star.directions.size() == 3 ? 1 * h : slab / 2;
+  // C3 gives one spacing for three sheets; the points here are displaced by up to a quarter of one. Four sheets part
+  // into two lines, which wander as far as the damaged core is wide.
+  const double bound = star.directions.size() == 3 ? 1.1 * h : slab / 2;
   for (const Vec3& x : line) EXPECT_LE(std::hypot(x.x() - axis.x(), x.y() - axis.y()), bound);
 }
 
@@ -143,25 +144,53 @@ TEST(Lump, ShareIsThatOfPointsFarFromEverySoundOne) {
   const double points = static_cast<double>(field.points.size());
   const Extraction result = run(field);
   EXPECT_GT(deep, 0);
-  EXPECT_EQ(result.lump_share, deep / points);
+  EXPECT_NEAR(result.lump_share, deep / points, 0.15 * deep / points);  // nodes and points differ by half a spacing
   EXPECT_EQ(result.damaged_share, damaged / points);
 }
 
 TEST(Lump, SwallowsIslandsThatAreTooSmall) {
   DamageField field = crushed_centre(7.5 * h);
-  int grains = 0;  // the eight points at the centre: a sound grain in the crushed core
+  // A sound grain in the crushed core, between 27 and 125 nodes large.
   for (std::size_t i = 0; i < field.points.size(); ++i)
-    if ((field.points[i] - Vec3::Constant(0.5)).norm() < h) {
-      field.damage[i] = 0;
-      ++grains;
-    }
-  ASSERT_EQ(grains, 8);
+    if ((field.points[i] - Vec3::Constant(0.5)).norm() < 2.5 * h) field.damage[i] = 0;
   Settings settings;
   settings.close_necks = false;
   settings.smallest_share = 0;
+  settings.smallest_nodes = 27;
   EXPECT_EQ(run(field, unit_cube(), settings).region_count, 9);
-  settings.smallest_points = 9;
+  settings.smallest_nodes = 125;
   EXPECT_EQ(run(field, unit_cube(), settings).region_count, 8);
+}
+
+TEST(Lump, BecomesDebrisOnRequest) {
+  const DamageField field = crushed_centre(7.5 * h, 0.25);
+  Settings settings;
+  settings.debris_size = 4 * h;
+  const Extraction result = run(field, unit_cube(), settings);
+  EXPECT_GT(result.debris, 8);
+  EXPECT_EQ(result.region_count, 8 + result.debris);
+  EXPECT_TRUE(closed(result.boundary));
+  const double core = 4.0 / 3 * std::numbers::pi * std::pow(7.5 * h, 3);
+  double debris = 0;
+  for (int region = 0; region < result.region_count; ++region) {
+    const double part = volume_in(result.boundary, region, unit_cube(), 100);
+    if (part < 0.05) debris += part;
+    EXPECT_GT(part, 0);
+  }
+  EXPECT_GT(debris, 0.4 * core);
+  EXPECT_LT(debris, 1.1 * core);
+}
+
+TEST(Lump, ABodyThatIsAllCrushedBecomesDebrisOnRequest) {
+  const DamageField field = cloud(unit_cube(), h, everywhere, everywhere, 0.25);
+  EXPECT_EQ(run(field).region_count, 1);
+  Settings settings;
+  settings.debris_size = 0.25;
+  const Extraction result = run(field, unit_cube(), settings);
+  EXPECT_EQ(result.region_count, result.debris);
+  EXPECT_GT(result.region_count, 30);   // densest: cubes of that width make 64, balls of that diameter pack 90
+  EXPECT_LT(result.region_count, 130);  // and those on the surface are halved
+  EXPECT_TRUE(closed(result.boundary));
 }
 
 }  // namespace

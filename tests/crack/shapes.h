@@ -40,8 +40,10 @@ inline bool nowhere(const Vec3&) { return false; }
 
 inline Box unit_cube() { return {Vec3::Zero(), Vec3::Ones()}; }
 
-inline Extraction run(const DamageField& field, const Box& domain = unit_cube(), const Settings& settings = {}) {
+/// With nodes as far apart as the points, unless the settings say otherwise.
+inline Extraction run(const DamageField& field, const Box& domain = unit_cube(), Settings settings = {}) {
   SilentProgress progress;
+  if (settings.node_spacing == 0) settings.node_spacing = field.spacing;
   return extract(field, domain, settings, progress);
 }
 
@@ -180,6 +182,13 @@ inline int region_at(const geometry::RegionBoundary& boundary, const Vec3& x) {
   return -1;
 }
 
+/// The corners of a crack face.
+inline std::vector<Vec3> polygon_of(const Extraction& result, const CrackFace& face) {
+  std::vector<Vec3> polygon;
+  for (const int v : face.loop) polygon.push_back(result.vertices[static_cast<std::size_t>(v)]);
+  return polygon;
+}
+
 /// The part of a convex polygon in a box.
 inline std::vector<Vec3> clipped(std::vector<Vec3> polygon, const Box& box) {
   for (int plane = 0; plane < 6 && !polygon.empty(); ++plane) {
@@ -208,7 +217,7 @@ template <typename Distance>
 Deviation deviation(const Extraction& result, const Box& box, Distance&& distance) {
   Deviation d;
   for (const CrackFace& face : result.faces) {
-    const std::vector<Vec3> polygon = clipped(face.polygon, box);
+    const std::vector<Vec3> polygon = clipped(polygon_of(result, face), box);
     if (face.kind == FaceKind::partial || polygon.size() < 3) continue;
     double squares = 0;
     for (const Vec3& x : polygon) {

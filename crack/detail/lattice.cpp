@@ -1,0 +1,155 @@
+#include "crack/detail/lattice.h"
+
+#include <cmath>
+#include <string>
+
+namespace sunder::crack::detail {
+
+namespace {
+
+constexpr double most_positions = 400e6;  // 5 GB with everything that hangs on a position
+constexpr double body_share = 0.2;        // of the weight deep inside: a flat surface a third of a spacing away has it
+
+std::array<int, 18> steps_to_links(const Lattice& lattice) {
+  std::array<int, 18> links{};
+  std::size_t axial = 0, diagonal = 6;
+  for (int k = -1; k <= 1; ++k)
+    for (int j = -1; j <= 1; ++j)
+      for (int i = -1; i <= 1; ++i) {
+        const int far = i * i + j * j + k * k;
+        if (far == 1) links[axial++] = lattice.step(i, j, k);
+        if (far == 2) links[diagonal++] = lattice.step(i, j, k);
+      }
+  return links;
+}
+
+}  // namespace
+
+Lattice::Lattice(const Box& box, double spacing, int border) : spacing_(spacing) {
+  double count = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double half = std::ceil(box.sizes()[axis] / 2 / spacing) + border;
+    count *= 2 * half + 1;
+    if (!(count <= most_positions))
+      throw Error(ErrorKind::usage, "crack: a node spacing of " + std::to_string(spacing) +
+                                        " m is too fine for a body of " + std::to_string(box.sizes().maxCoeff()) +
+                                        " m; make it coarser");
+    middle_[axis] = static_cast<int>(half);
+    size_[axis] = 2 * middle_[axis] + 1;
+  }
+  for (int axis = 0; axis < 3; ++axis) origin_[axis] = box.center()[axis] - middle_[axis] * spacing;
+  links_ = steps_to_links(*this);
+}
+
+void Lattice::set_nodes(const std::vector<char>& marked) {
+  node_at_.assign(marked.size(), -1);
+  position_.clear();
+  for (int position = 0; position < positions(); ++position) {
+    if (!marked[static_cast<std::size_t>(position)]) continue;
+    node_at_[static_cast<std::size_t>(position)] = count();
+    position_.push_back(position);
+  }
+}
+
+std::array<int, 3> Lattice::coordinates(int position) const {
+  const int row = position / size_[0];
+  return {position % size_[0] - middle_[0], row % size_[1] - middle_[1], row / size_[1] - middle_[2]};
+}
+
+Vec3 Lattice::at(int position) const {
+  const auto [i, j, k] = coordinates(position);
+  return origin_ + spacing_ * Vec3(i + middle_[0], j + middle_[1], k + middle_[2]);
+}
+
+int Lattice::node_beside(int node, int i, int j, int k) const {
+  const std::array<int, 3> at = coordinates(position(node)), by = {i, j, k};
+  for (int axis = 0; axis < 3; ++axis)
+    if (std::abs(at[axis] + by[axis]) > middle_[axis]) return -1;
+  return node_at(position(node) + step(i, j, k));
+}
+
+std::pair<int, Vec3> Lattice::cell_of(const Vec3& x) const {
+  const Vec3 local = (x - origin_) / spacing_;
+  std::array<int, 3> cell;
+  Vec3 rest;
+  for (int axis = 0; axis < 3; ++axis) {
+    cell[axis] = static_cast<int>(std::clamp(std::floor(local[axis]), 0.0, static_cast<double>(size_[axis] - 2)));
+    rest[axis] = std::clamp(local[axis] - cell[axis], 0.0, 1.0);
+  }
+  return {step(cell[0], cell[1], cell[2]), rest};
+}
+
+int Lattice::nearest(const Vec3& x) const {
+  const auto [corner, rest] = cell_of(x);
+  return corner + step(rest.x() >= 0.5, rest.y() >= 0.5, rest.z() >= 0.5);
+}
+
+namespace {
+
+/// Sums of weights over points, per position.
+struct Sums {
+  explicit Sums(int positions) : weight(static_cast<std::size_t>(positions), 0.0), damage(weight) {}
+  std::vector<double> weight, damage, timed, time;  // the last two: empty unless there are times
+};
+
+Sums sums(const Lattice& lattice, const DamageField& field, double crack_damage) {
+  Sums result(lattice.positions());
+  if (!field.damage_time.empty()) {
+    result.timed.assign(result.weight.size(), 0.0);
+    result.time = result.timed;
+  }
+  for (std::size_t p = 0; p < field.points.size(); ++p) {
+    const double crack = field.damage[p] >= crack_damage;
+    const bool timed = !field.damage_time.empty() && field.damage_time[p] >= 0;
+    lattice.for_each_corner(field.points[p], [&](int position, double w) {
+      const std::size_t at = static_cast<std::size_t>(position);
+      result.weight[at] += w;
+      result.damage[at] += w * crack;
+      if (!timed) return;
+      result.timed[at] += w;
+      result.time[at] += w * field.damage_time[p];
+    });
+  }
+  return result;
+}
+
+/// Where displaced points leave a gap, a node between others of the body is one of them.
+void fill_holes(const Lattice& lattice, const std::vector<double>& weight, std::vector<char>& in_body) {
+  const std::vector<char> before = in_body;
+  for (int position = 0; position < lattice.positions(); ++position) {
+    const std::size_t at = static_cast<std::size_t>(position);
+    if (before[at] || !(weight[at] > 0)) continue;
+    int beside = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      for (const int step : {-lattice.stride(axis), lattice.stride(axis)})
+        beside += before[static_cast<std::size_t>(position + step)];
+    in_body[at] = beside >= 5;
+  }
+}
+
+}  // namespace
+
+Raster rasterise(const DamageField& field, const Box& domain, double spacing, double crack_damage) {
+  Box box = domain;
+  for (const Vec3& x : field.points) box.extend(x);
+  Lattice lattice(box, spacing, 2);
+  const Sums sum = sums(lattice, field, crack_damage);
+  std::vector<char> in_body(sum.weight.size(), 0);
+  const double least = body_share * std::pow(spacing / field.spacing, 3);
+  for (std::size_t at = 0; at < in_body.size(); ++at) in_body[at] = sum.weight[at] > least;
+  for (const Vec3& x : field.points) in_body[static_cast<std::size_t>(lattice.nearest(x))] = 1;
+  fill_holes(lattice, sum.weight, in_body);
+  lattice.set_nodes(in_body);
+
+  Raster raster{std::move(lattice), {}, {}};
+  raster.damage.resize(static_cast<std::size_t>(raster.lattice.count()));
+  raster.damage_time.assign(raster.damage.size(), -1.0);
+  for (std::size_t node = 0; node < raster.damage.size(); ++node) {
+    const std::size_t at = static_cast<std::size_t>(raster.lattice.position(static_cast<int>(node)));
+    raster.damage[node] = sum.damage[at] / sum.weight[at];
+    if (!sum.timed.empty() && sum.timed[at] > 0) raster.damage_time[node] = sum.time[at] / sum.timed[at];
+  }
+  return raster;
+}
+
+}  // namespace sunder::crack::detail
