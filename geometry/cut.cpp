@@ -1,52 +1,35 @@
 #include "geometry/cut.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <numeric>
 
-#include <CGAL/Polygon_mesh_processing/measure.h>
-#include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
-#include <CGAL/Polygon_mesh_processing/orientation.h>
-#include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
-#include <CGAL/Polygon_mesh_processing/self_intersections.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 
 #include "core/random.h"
-#include "geometry/detail/body_cut.h"
-#include "geometry/detail/cgal_mesh.h"
-#include "geometry/detail/shells.h"
+#include "geometry/detail/assemble.h"
+#include "geometry/detail/embedding.h"
+#include "geometry/detail/predicates.h"
+#include "geometry/inspect.h"
 #include "geometry/mass_properties.h"
 
 namespace sunder::geometry {
 namespace {
 
-namespace pmp = CGAL::Polygon_mesh_processing;
-using detail::Kernel;
-using detail::SurfaceMesh;
-using Point = Kernel::Point_3;
+using detail::BoxTree;
+using detail::CrackComplex;
+using detail::Surface;
 
-// Cut points that rounding moves across a neighbour, or a crack that touches the body without crossing it, can make a
-// fragment invalid. The whole complex is then moved by about this share of its size (regions keep fitting together).
+// A crack that touches the body without crossing it, or a point that rounding moves across a face, stops an attempt.
+// The whole complex is then moved by about this share of the body's size (regions keep fitting together).
 constexpr double kNudge = 1e-6;
-constexpr int kAttempts = 4;
+constexpr int kAttempts = 8;
 
 [[noreturn]] void reject(const std::string& why) { throw Error(ErrorKind::mesh, why); }
 
-bool has_coincident_points(std::vector<Vec3> points) {
-  const auto less = [](const Vec3& a, const Vec3& b) {
-    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
-  };
-  std::sort(points.begin(), points.end(), less);
-  return std::adjacent_find(points.begin(), points.end()) != points.end();
-}
-
-bool is_degenerate(const std::vector<Vec3>& vertices, const Triangle& face) {
-  return CGAL::collinear(detail::to_point(vertices[face[0]]), detail::to_point(vertices[face[1]]),
-                         detail::to_point(vertices[face[2]]));
-}
-
-bool has_degenerate_face(const TriangleMesh& mesh) {
-  return std::any_of(mesh.faces.begin(), mesh.faces.end(),
-                     [&](const Triangle& face) { return is_degenerate(mesh.vertices, face); });
-}
+bool less(const Vec3& a, const Vec3& b) { return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end()); }
 
 // ---- Input ----------------------------------------------------------------------------------------------------
 
@@ -57,230 +40,172 @@ bool indices_in_range(const TriangleMesh& mesh) {
   });
 }
 
-bool all_finite(const std::vector<Vec3>& points) {
-  return std::all_of(points.begin(), points.end(), [](const Vec3& x) { return x.allFinite(); });
+bool has_coincident_vertices(const TriangleMesh& mesh) {
+  std::vector<bool> used(mesh.vertices.size(), false);
+  for (const Triangle& face : mesh.faces) {
+    for (const int vertex : face) used[vertex] = true;
+  }
+  std::vector<Vec3> points;
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    if (used[i]) points.push_back(mesh.vertices[i]);
+  }
+  tbb::parallel_sort(points.begin(), points.end(), less);
+  return std::adjacent_find(points.begin(), points.end()) != points.end();
 }
 
-// A vertex where several fans meet: the halfedges around the vertices do not add up to all halfedges.
-bool has_non_manifold_vertex(const SurfaceMesh& mesh) {
-  std::size_t around = 0;
-  for (const auto vertex : mesh.vertices()) around += mesh.is_isolated(vertex) ? 0 : mesh.degree(vertex);
-  return around != mesh.number_of_halfedges();
+bool has_degenerate_face(const TriangleMesh& mesh) {
+  return std::any_of(mesh.faces.begin(), mesh.faces.end(), [&](const Triangle& face) {
+    return detail::collinear(mesh.vertices[face[0]], mesh.vertices[face[1]], mesh.vertices[face[2]]);
+  });
 }
 
-// CGAL accepts the outside of a surface as a volume too.
-void require_volume(const SurfaceMesh& surface, const std::string& name) {
-  if (!pmp::does_bound_a_volume(surface)) reject(name + " does not bound a volume");
-  if (!(pmp::volume(surface) > 0)) reject(name + " is inside out or has no volume");
+bool has_several_shells(const TriangleMesh& mesh, const detail::Edges& edges) {
+  detail::DisjointSets sets(static_cast<int>(mesh.faces.size()));
+  for (int edge = 0; edge < edges.count(); ++edge) sets.unite(edges.begin(edge)[0].face, edges.begin(edge)[1].face);
+  for (int face = 0; face < static_cast<int>(mesh.faces.size()); ++face) {
+    if (sets.find(face) != 0) return true;
+  }
+  return false;
 }
 
-// What corefinement asks of its operands and cannot check itself: without it it may hang.
-void require_solid(const TriangleMesh& mesh, const SurfaceMesh& surface, const std::string& name) {
-  if (!CGAL::is_closed(surface)) reject(name + " is not closed");
-  if (has_non_manifold_vertex(surface)) reject(name + " has a vertex where several fans of faces meet");
-  if (has_coincident_points(detail::compact(mesh.vertices, mesh.faces).vertices))
-    reject(name + " has coincident vertices");
-  if (has_degenerate_face(mesh)) reject(name + " has a face without area");
-  require_volume(surface, name);
-}
+/// The body, checked and ready to be cut.
+struct Prepared {
+  const TriangleMesh& mesh;
+  Surface surface;
+  BoxTree tree;
+  Box box;
+  double volume;
+};
 
-SurfaceMesh body_surface(const TriangleMesh& body) {
+Prepared prepare(const TriangleMesh& body) {
+  const auto finite = [](const Vec3& x) { return x.allFinite(); };
   if (body.faces.empty()) reject("the body has no faces");
   if (!indices_in_range(body)) reject("a face of the body has a vertex that does not exist");
-  if (!all_finite(body.vertices)) reject("the body has a vertex that is not finite");
-  SurfaceMesh surface = detail::to_cgal(body);
-  require_solid(body, surface, "the body");
-  return surface;
-}
-
-// The smallest height of the fan's triangles, 0 if one has no area.
-double fan_height(const std::vector<Vec3>& vertices, const std::vector<Triangle>& fan) {
-  double lowest = std::numeric_limits<double>::infinity();
-  for (const Triangle& face : fan) {
-    if (is_degenerate(vertices, face)) return 0;
-    const Vec3 &a = vertices[face[0]], &b = vertices[face[1]], &c = vertices[face[2]];
-    const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
-    lowest = std::min(lowest, (b - a).cross(c - a).norm() / longest);
+  if (!std::all_of(body.vertices.begin(), body.vertices.end(), finite)) {
+    reject("the body has a vertex that is not finite");
   }
-  return lowest;
-}
-
-// The fan whose flattest triangle is the least flat. Empty if every fan has a triangle without area.
-std::vector<Triangle> best_fan(const std::vector<Vec3>& vertices, const std::vector<int>& loop) {
-  std::vector<Triangle> best;
-  double best_height = 0;
-  const std::size_t count = loop.size();
-  for (std::size_t apex = 0; apex < count && count > 2; ++apex) {
-    std::vector<Triangle> fan;
-    for (std::size_t i = 1; i + 1 < count; ++i) {
-      fan.push_back({loop[apex], loop[(apex + i) % count], loop[(apex + i + 1) % count]});
-    }
-    const double height = fan_height(vertices, fan);
-    if (height > best_height) best_height = height, best = std::move(fan);
-  }
-  return best;
-}
-
-// Every region's triangles, turned outward, over the vertices of the whole complex. A face is triangulated once, for
-// both of its regions.
-std::vector<std::vector<Triangle>> triangulate(const RegionBoundary& regions) {
-  std::vector<std::vector<Triangle>> result(regions.region_count);
-  const int vertex_count = static_cast<int>(regions.vertices.size());
-  for (const RegionBoundary::Face& face : regions.faces) {
-    const auto valid = [&](int vertex) { return vertex >= 0 && vertex < vertex_count; };
-    if (!std::all_of(face.loop.begin(), face.loop.end(), valid)) reject("a region face has a missing vertex");
-    if (face.inside < 0 || std::max(face.inside, face.outside) >= regions.region_count || face.outside < -1) {
-      reject("a region face belongs to a region that does not exist");
-    }
-    if (face.inside == face.outside) continue;
-    const std::vector<Triangle> fan = best_fan(regions.vertices, face.loop);
-    if (fan.empty()) reject("a region face has no area");
-    for (const auto& [a, b, c] : fan) {
-      result[face.inside].push_back({a, b, c});
-      if (face.outside >= 0) result[face.outside].push_back({a, c, b});
-    }
+  if (!is_closed_two_manifold(body)) reject("the body is not a closed two-manifold");
+  if (has_coincident_vertices(body)) reject("the body has coincident vertices");
+  if (has_degenerate_face(body)) reject("the body has a face without area");
+  Prepared result{body,
+                  {body.faces, detail::edges_of(body.faces, static_cast<int>(body.vertices.size()))},
+                  BoxTree(body.vertices, body.faces),
+                  bounds(body),
+                  mass_properties(body).volume};
+  if (detail::intersects_itself(body, result.tree)) reject("the body intersects itself");
+  if (!(result.volume > 0)) reject("the body is inside out or has no volume");
+  if (has_several_shells(body, result.surface.edges) && !inspect(body).is_solid()) {
+    reject("the body's shells do not bound a volume");
   }
   return result;
 }
 
-SurfaceMesh region_surface(const TriangleMesh& region, const std::string& name) {
-  if (region.faces.empty()) return {};
-  if (has_coincident_points(region.vertices)) reject(name + " has coincident vertices");
-  std::vector<Point> points;
-  for (const Vec3& x : region.vertices) points.push_back(detail::to_point(x));
-  std::vector<Triangle> faces = region.faces;
-  // Gives each fan of faces its own vertex where a region touches itself.
-  pmp::orient_polygon_soup(points, faces);
-  SurfaceMesh surface;
-  if (!pmp::is_polygon_soup_a_polygon_mesh(faces)) reject(name + " is not a manifold surface");
-  pmp::polygon_soup_to_polygon_mesh(points, faces, surface);
-  if (!CGAL::is_closed(surface)) reject(name + " is not closed");
-  require_volume(surface, name);
-  return surface;
-}
-
-// ---- Output ---------------------------------------------------------------------------------------------------
-
-void require_valid_fragment(const TriangleMesh& mesh) {
-  const SurfaceMesh surface = detail::to_cgal(mesh);
-  if (!CGAL::is_closed(surface) || has_non_manifold_vertex(surface)) reject("a fragment is open or not manifold");
-  if (has_degenerate_face(mesh)) reject("a fragment has a face without area");
-  if (pmp::does_self_intersect(surface)) reject("a fragment intersects itself");
-}
-
-// ---- All regions ----------------------------------------------------------------------------------------------
-
-using Complex = std::vector<SurfaceMesh>;
-
-Complex build_complex(const RegionBoundary& regions) {
-  if (!all_finite(regions.vertices)) reject("a region has a vertex that is not finite");
-  Complex complex;
-  for (const std::vector<Triangle>& faces : triangulate(regions)) {
-    const std::string name = "region " + std::to_string(complex.size());
-    complex.push_back(region_surface(detail::compact(regions.vertices, faces), name));
-  }
-  return complex;
-}
-
-Box bounds(const SurfaceMesh& surface) {
-  Box box;
-  for (const Point& point : surface.points()) box.extend(detail::to_vec3(point));
-  return box;
-}
-
 // Moves all regions rigidly by about `distance`, differently in every attempt.
-void nudge(Complex& complex, int attempt, double distance, const Box& box) {
+void nudge(CrackComplex& complex, int attempt, double distance, const Box& box) {
   const auto random = [&](int index) { return 2 * random_unit(attempt, 0, index) - 1; };
   const Vec3 turn(random(0), random(1), random(2)), offset(random(3), random(4), random(5));
   const Vec3 center = box.center();
   const double radius = box.diagonal().norm() / 2;
   const Mat3 rotation = Eigen::AngleAxisd(turn.norm() * distance / radius, turn.normalized()).toRotationMatrix();
-  for (SurfaceMesh& surface : complex) {
-    for (Point& point : surface.points()) {
-      point = detail::to_point(center + rotation * (detail::to_vec3(point) - center) + offset * distance);
-    }
-  }
+  for (Vec3& x : complex.vertices) x = center + rotation * (x - center) + offset * distance;
 }
 
-std::vector<Fragment> fragments_of(const detail::Piece& piece, int region) {
-  std::vector<Fragment> fragments;
-  for (detail::Piece& solid : detail::solids(piece)) {
-    require_valid_fragment(solid.mesh);
-    fragments.push_back({std::move(solid.mesh), std::move(solid.source), region});
+// ---- One attempt ----------------------------------------------------------------------------------------------
+
+/// Ends all attempts: no nudge can mend the input.
+struct BadInput {
+  const char* why;
+};
+
+std::vector<Fragment> divide_body(const Prepared& body, const CrackComplex& complex, Progress& progress) {
+  const Vec3 room = Vec3::Constant(1e-9 * body.box.diagonal().norm());
+  const CrackComplex near = detail::part_near(complex, Box(body.box.min() - room, body.box.max() + room));
+  std::vector<Vec3> points = body.mesh.vertices;
+  const int first = static_cast<int>(points.size());
+  points.insert(points.end(), near.vertices.begin(), near.vertices.end());
+  Surface cracks{near.triangles, detail::edges_of(near.triangles, static_cast<int>(near.vertices.size()))};
+  const detail::Wedges wedges(near, cracks.edges);
+  for (Triangle& face : cracks.faces) face = {face[0] + first, face[1] + first, face[2] + first};
+  for (auto& [low, high] : cracks.edges.ends) low += first, high += first;
+  progress.checkpoint("cut", 0.1);
+  const detail::Arrangement arrangement = detail::arrange(points, first, body.surface, body.tree, cracks);
+  progress.checkpoint("cut", 0.4);
+  const std::vector<char> is_inside = detail::crack_cells_inside(arrangement, body.mesh);
+  if (detail::cracks_end_inside(arrangement, wedges, is_inside)) {
+    throw BadInput{"the faces around an edge inside the body do not part regions"};
   }
-  return fragments;
+  detail::Labels labels = detail::label(arrangement, near, complex, is_inside);
+  progress.checkpoint("cut", 0.5);
+  detail::require_embedded(arrangement, body.tree, is_inside);
+  progress.checkpoint("cut", 0.7);
+  return detail::assemble(body.mesh, arrangement, near, wedges, labels);
 }
 
-std::vector<Fragment> cut_region(const detail::BodyCut& body, const SurfaceMesh& region, int index) {
-  try {
-    return fragments_of(body.inside(region), index);
-  } catch (const std::exception&) {
-    // Coplanar faces and the like.
-    return fragments_of(body.inside_whole(region), index);
-  }
+void require_closed(const std::vector<Fragment>& fragments) {
+  std::atomic<bool> closed = true;
+  tbb::parallel_for(std::size_t{0}, fragments.size(), [&](std::size_t i) {
+    if (!is_closed_two_manifold(fragments[i].mesh)) closed = false;
+  });
+  if (!closed) reject("a fragment is open or not manifold");
 }
 
-CutResult cut_all(const detail::BodyCut& body, const Box& box, const Complex& complex, Progress& progress) {
-  CutResult result;
-  for (std::size_t region = 0; region < complex.size(); ++region) {
-    progress.checkpoint("cut", static_cast<double>(region) / complex.size());
-    if (complex[region].is_empty() || !bounds(complex[region]).intersects(box)) continue;
-    std::vector<Fragment> fragments = cut_region(body, complex[region], static_cast<int>(region));
-    std::move(fragments.begin(), fragments.end(), std::back_inserter(result.fragments));
-  }
-  progress.checkpoint("cut", 1);
-  return result;
+double volume_of(const std::vector<Fragment>& fragments) {
+  std::vector<double> volume(fragments.size());
+  tbb::parallel_for(std::size_t{0}, fragments.size(),
+                    [&](std::size_t i) { volume[i] = mass_properties(fragments[i].mesh).volume; });
+  return std::accumulate(volume.begin(), volume.end(), 0.0);
 }
 
 CutResult refused(CutStatus status, const std::string& detail, double volume_error = 0) {
   return {.status = status, .detail = detail, .fragments = {}, .volume_error = volume_error};
 }
 
-CutResult attempt(const detail::BodyCut& body, const Box& box, const Complex& complex, Progress& progress) {
+CutResult attempt(const Prepared& body, const CrackComplex& complex, double tolerance, Progress& progress) {
   try {
-    return cut_all(body, box, complex, progress);
+    CutResult result;
+    result.fragments = divide_body(body, complex, progress);
+    progress.checkpoint("cut", 0.8);
+    require_closed(result.fragments);
+    const double sum = volume_of(result.fragments);
+    result.volume_error = std::abs(sum - body.volume) / body.volume;
+    if (result.volume_error <= tolerance) return result;
+    return refused(CutStatus::volume_lost,
+                   "the fragments hold " + std::to_string(sum / body.volume) + " of the body's volume",
+                   result.volume_error);
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::mesh) throw;
     return refused(CutStatus::failed, error.what());
-  } catch (const std::exception& error) {  // CGAL: a failed assertion or operands that intersect themselves
-    return refused(CutStatus::failed, error.what());
+  } catch (const BadInput& error) {
+    return refused(CutStatus::bad_input, error.why);
   }
 }
 
-CutResult checked_volume(CutResult result, double volume, double tolerance) {
-  double sum = 0;
-  for (const Fragment& fragment : result.fragments) sum += mass_properties(fragment.mesh).volume;
-  result.volume_error = std::abs(sum - volume) / volume;
-  if (result.volume_error <= tolerance) return result;
-  return refused(CutStatus::volume_lost, "the fragments hold " + std::to_string(sum / volume) + " of the body's volume",
-                 result.volume_error);
+CutResult cut_prepared(const Prepared& body, const CrackComplex& complex, double tolerance, Progress& progress) {
+  CutResult result;
+  for (int nudges = 0; nudges < kAttempts; ++nudges) {
+    CrackComplex moved = complex;
+    if (nudges > 0) nudge(moved, nudges, kNudge * body.box.diagonal().norm(), body.box);
+    result = attempt(body, moved, tolerance, progress);
+    result.nudges = nudges;
+    if (result.status == CutStatus::ok || result.status == CutStatus::bad_input) break;
+  }
+  progress.checkpoint("cut", 1);
+  return result;
 }
 
 }  // namespace
 
 CutResult cut(const TriangleMesh& body, const RegionBoundary& regions, const CutSettings& settings,
               Progress& progress) {
-  SurfaceMesh surface;
-  Complex complex;
+  progress.checkpoint("cut", 0);
   try {
-    surface = body_surface(body);
-    complex = build_complex(regions);
-  } catch (const std::exception& error) {
+    const CrackComplex complex = detail::crack_complex(regions);
+    const Prepared prepared = prepare(body);
+    return cut_prepared(prepared, complex, settings.volume_tolerance, progress);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::mesh) throw;
     return refused(CutStatus::bad_input, error.what());
   }
-  const detail::BodyCut prepared(body, surface);
-  const Box box = bounds(body);
-  const double volume = mass_properties(body).volume;
-  CutResult result;
-  for (int nudges = 0; nudges < kAttempts; ++nudges) {
-    if (nudges > 0) nudge(complex, nudges, kNudge * box.diagonal().norm(), box);
-    result = attempt(prepared, box, complex, progress);
-    if (result.status == CutStatus::ok) result = checked_volume(std::move(result), volume, settings.volume_tolerance);
-    result.nudges = nudges;
-    if (result.status == CutStatus::ok) return result;
-  }
-  if (pmp::does_self_intersect(surface)) return refused(CutStatus::bad_input, "the body intersects itself");
-  return result;
 }
 
 }  // namespace sunder::geometry

@@ -8,31 +8,36 @@
 
 namespace sunder::geometry {
 
-/// Space divided into regions by planar convex polygons that share vertices by index. Every region's faces together are
-/// a closed surface (a union of convex cells); the regions fill a box that holds the body with room to spare.
+/// Faces between regions. They share vertices by index, so around every edge inside the body the regions follow each
+/// other; faces may be bent and regions need not be convex. What lies beyond the body does not matter.
 struct RegionBoundary {
   struct Face {
-    std::vector<int>
-        loop;  ///< vertex indices, counter-clockwise seen from `outside`: the normal points from inside to outside
-    int inside = 0;    ///< region on the inner side
-    int outside = -1;  ///< region on the outer side, -1: the hull of the complex
+    std::vector<int> loop;  ///< vertex indices of a triangle or a planar convex polygon, counter-clockwise seen from
+                            ///< `outside`: the normal points from inside to outside
+    int inside = 0;         ///< region on the inner side
+    int outside = -1;       ///< region on the outer side; -1: a face of the hull, which is ignored
   };
   std::vector<Vec3> vertices;
   std::vector<Face> faces;
   int region_count = 0;
 };
 
-/// One closed piece. Faces cut out of the body know where they come from.
+/// One closed piece. Its faces know where they come from and what lies beyond them.
 struct Fragment {
   TriangleMesh mesh;
   std::vector<int> source_face;  ///< per face: the face of the body that it is a part of, or -1 for a face on a crack
   int region = 0;
+  std::vector<int> crack_face;  ///< per face: index into RegionBoundary::faces, -1 for a part of the body's surface
+  std::vector<int> neighbour;   ///< per face: the fragment that has the same face turned round, -1 outside
+  /// Per vertex: number of its point. Points of all fragments are numbered together, so the same number in two
+  /// fragments means the same position, bit for bit, and different numbers mean different positions.
+  std::vector<int> vertex_id;
 };
 
 enum class CutStatus {
   ok,
-  bad_input,    ///< the body is not a solid, or a region's faces are not a closed surface
-  failed,       ///< a Boolean operation failed, or a fragment came out open or self-intersecting
+  bad_input,    ///< the body is not a solid, or the regions contradict each other or end inside the body
+  failed,       ///< no attempt gave closed fragments without self-intersection
   volume_lost,  ///< the fragments' volumes do not add up to the body's
 };
 
@@ -45,14 +50,16 @@ struct CutResult {
 };
 
 struct CutSettings {
-  double volume_tolerance = 1e-6;  ///< largest accepted volume_error
+  double volume_tolerance = 1e-12;  ///< largest accepted volume_error
 };
 
-/// Intersects the body with every region (CGAL corefinement with exact predicates) and splits the results into
-/// connected solids, so a region may give no, one or several fragments. A region boundary may cross the body any number
-/// of times and its faces may lie outside. The body is cut once: no fragment is ever cut again, so rounding does not
-/// accumulate. Fragments are ordered by region, then by their smallest source vertex position: the same input gives the
-/// same output. Void shells: a shell that lies inside another shell of the same region belongs to the same fragment.
+/// Divides the body along all faces between regions in one pass: an arrangement with exact predicates, whose points are
+/// computed and rounded once, from the input alone. Fragments are the connected solids of every region, so a region may
+/// give no, one or several; a shell that lies inside another shell of the same region is a void of that fragment.
+/// Neighbours share their faces bit for bit. A body that nothing divides comes back as it is. What is delivered is
+/// closed, two-manifold and free of self-intersections; when a crack only touches a face, an edge or a vertex of the
+/// body, or rounding would break a fragment, all regions are moved together by `nudges` and the cut is made again.
+/// Fragments are ordered by region, then by their lowest vertex. The result does not depend on the number of threads.
 CutResult cut(const TriangleMesh& body, const RegionBoundary& regions, const CutSettings& settings, Progress& progress);
 
 }  // namespace sunder::geometry

@@ -10,69 +10,11 @@
 namespace sunder::geometry::detail {
 namespace {
 
-struct Shell {
-  Piece piece;
-  double volume = 0;  // signed
-};
-
-std::vector<Shell> shells(const Piece& surface) {
-  const auto neighbours = face_neighbours(surface.mesh);
-  std::vector<bool> seen(neighbours.size(), false);
-  std::vector<Shell> result;
-  for (std::size_t start = 0; start < neighbours.size(); ++start) {
-    if (seen[start]) continue;
-    std::vector<int> members = {static_cast<int>(start)};
-    seen[start] = true;
-    for (std::size_t i = 0; i < members.size(); ++i) {
-      for (const int next : neighbours[members[i]]) {
-        if (!seen[next]) seen[next] = true, members.push_back(next);
-      }
-    }
-    std::sort(members.begin(), members.end());
-    Shell shell;
-    std::vector<Triangle> faces;
-    for (const int face : members) {
-      faces.push_back(surface.mesh.faces[face]);
-      shell.piece.source.push_back(surface.source[face]);
-    }
-    shell.piece.mesh = compact(surface.mesh.vertices, faces);
-    shell.volume = mass_properties(shell.piece.mesh).volume;
-    result.push_back(std::move(shell));
-  }
-  return result;
-}
-
 // One vertex inside is enough: the shells do not cross, and a vertex where they touch counts as outside.
 bool surrounds(const TriangleMesh& outer, const TriangleMesh& inner) {
   if (!bounds(outer).contains(bounds(inner))) return false;
   const InsideTest inside(outer);
   return std::any_of(inner.vertices.begin(), inner.vertices.end(), inside);
-}
-
-void append(Piece& outer, const Piece& inner) {
-  const int offset = static_cast<int>(outer.mesh.vertices.size());
-  outer.mesh.vertices.insert(outer.mesh.vertices.end(), inner.mesh.vertices.begin(), inner.mesh.vertices.end());
-  for (const auto& [a, b, c] : inner.mesh.faces) outer.mesh.faces.push_back({a + offset, b + offset, c + offset});
-  outer.source.insert(outer.source.end(), inner.source.begin(), inner.source.end());
-}
-
-bool lexicographically_less(const Vec3& a, const Vec3& b) {
-  return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
-}
-
-Vec3 lowest_vertex(const Piece& piece) {
-  return *std::min_element(piece.mesh.vertices.begin(), piece.mesh.vertices.end(), lexicographically_less);
-}
-
-// The smallest outer shell around a void.
-int owner_of(const Shell& hole, const std::vector<Shell>& all) {
-  int owner = -1;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const bool candidate = all[i].volume > 0 && (owner < 0 || all[i].volume < all[owner].volume);
-    if (candidate && surrounds(all[i].piece.mesh, hole.piece.mesh)) owner = static_cast<int>(i);
-  }
-  if (owner < 0) throw Error(ErrorKind::mesh, "a void has no shell around it");
-  return owner;
 }
 
 }  // namespace
@@ -122,23 +64,20 @@ TriangleMesh compact(const std::vector<Vec3>& vertices, const std::vector<Triang
   return mesh;
 }
 
-std::vector<Piece> solids(const Piece& surface) {
-  std::vector<Shell> all = shells(surface);
-  std::vector<int> owner(all.size(), -1);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (all[i].volume == 0) throw Error(ErrorKind::mesh, "a shell has no volume");
-    if (all[i].volume < 0) owner[i] = owner_of(all[i], all);
+std::vector<int> owners(const std::vector<const TriangleMesh*>& shells) {
+  std::vector<double> volume;
+  for (const TriangleMesh* shell : shells) volume.push_back(mass_properties(*shell).volume);
+  std::vector<int> result(shells.size());
+  for (std::size_t i = 0; i < shells.size(); ++i) {
+    if (volume[i] == 0) throw Error(ErrorKind::mesh, "a shell has no volume");
+    result[i] = volume[i] > 0 ? static_cast<int>(i) : -1;
+    if (volume[i] > 0) continue;
+    for (std::size_t outer = 0; outer < shells.size(); ++outer) {
+      const bool candidate = volume[outer] > 0 && (result[i] < 0 || volume[outer] < volume[result[i]]);
+      if (candidate && surrounds(*shells[outer], *shells[i])) result[i] = static_cast<int>(outer);
+    }
+    if (result[i] < 0) throw Error(ErrorKind::mesh, "a void has no shell around it");
   }
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (owner[i] >= 0) append(all[owner[i]].piece, all[i].piece);
-  }
-  std::vector<Piece> result;
-  for (Shell& shell : all) {
-    if (shell.volume > 0) result.push_back(std::move(shell.piece));
-  }
-  std::stable_sort(result.begin(), result.end(), [](const Piece& a, const Piece& b) {
-    return lexicographically_less(lowest_vertex(a), lowest_vertex(b));
-  });
   return result;
 }
 

@@ -8,17 +8,20 @@
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
+#include <tbb/global_control.h>
 
-#include "geometry/inspect.h"
-#include "geometry/mass_properties.h"
 #include "geometry/primitives.h"
+#include "tests/geometry/cut_checks.h"
 #include "tests/geometry/voronoi_regions.h"
 
 namespace sunder::geometry {
 namespace {
 
-// Sums of volumes, centres and inertias against the parent's: rounding of a few hundred faces.
-constexpr double kConserved = 1e-9;
+// A crack in a face of the body is moved by about 1e-6 of the body's size (3 m), so volumes change by that times the
+// crack's area (up to 2 m^2).
+constexpr double kNudged = 1e-5;
+// Areas of the parts of a face against the face: rounding.
+constexpr double kAreaKept = 1e-9;
 // A cut point is rounded once; its distance from the planes that made it, relative to the body's size.
 constexpr double kOnPlane = 1e-12;
 
@@ -55,74 +58,21 @@ std::vector<Family> families() {
           {"L", l_shape()}};
 }
 
-// chi = V - E + F of the faces' edges and vertices.
-int euler_characteristic(const TriangleMesh& mesh) {
-  std::set<std::pair<int, int>> edges;
-  std::set<int> vertices;
-  for (const Triangle& face : mesh.faces) {
-    for (int k = 0; k < 3; ++k) {
-      edges.insert(std::minmax({face[k], face[(k + 1) % 3]}));
-      vertices.insert(face[k]);
-    }
-  }
-  return static_cast<int>(vertices.size()) - static_cast<int>(edges.size()) + static_cast<int>(mesh.faces.size());
-}
-
-Mat3 inertia_about(const MassProperties& part, const Vec3& point) {
-  const Vec3 r = part.centroid - point;
-  return part.inertia + part.volume * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
-}
-
-void expect_solids(const CutResult& result) {
-  for (const Fragment& fragment : result.fragments) {
-    ASSERT_EQ(fragment.source_face.size(), fragment.mesh.faces.size());
-    const MeshReport report = inspect(fragment.mesh);
-    EXPECT_TRUE(report.is_solid()) << report.summary();
-    const int chi = euler_characteristic(fragment.mesh);
-    EXPECT_EQ(chi % 2, 0);
-    EXPECT_LE(chi, 2 * report.shells);
-  }
-}
-
-void expect_conserved(const TriangleMesh& body, const CutResult& result) {
-  const MassProperties whole = mass_properties(body);
-  double volume = 0;
-  Vec3 moment = Vec3::Zero();
-  Mat3 inertia = Mat3::Zero();
-  for (const Fragment& fragment : result.fragments) {
-    const MassProperties part = mass_properties(fragment.mesh);
-    volume += part.volume;
-    moment += part.volume * (part.centroid - whole.centroid);
-    inertia += inertia_about(part, whole.centroid);
-  }
-  const double size = bounds(body).diagonal().norm();
-  EXPECT_NEAR(volume, whole.volume, kConserved * whole.volume);
-  EXPECT_LE(moment.norm(), kConserved * whole.volume * size);
-  EXPECT_LE((inertia - whole.inertia).norm(), kConserved * whole.inertia.norm());
-}
-
 double plane_distance(const Vec3& x, const Vec3& on_plane, const Vec3& normal) {
   return std::abs((x - on_plane).dot(normal.normalized()));
 }
 
-// The distance of a face from the nearest plane among those of the region's faces.
-double distance_to_region(const TriangleMesh& mesh, const Triangle& face, const RegionBoundary& regions, int region) {
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const RegionBoundary::Face& candidate : regions.faces) {
-    if (candidate.inside != region && candidate.outside != region) continue;
-    Vec3 normal = Vec3::Zero();  // of the polygon, by Newell's sum
-    for (std::size_t i = 0; i < candidate.loop.size(); ++i) {
-      const Vec3& a = regions.vertices[candidate.loop[0]];
-      normal += (regions.vertices[candidate.loop[i]] - a)
-                    .cross(regions.vertices[candidate.loop[(i + 1) % candidate.loop.size()]] - a);
-    }
-    double farthest = 0;
-    for (const int vertex : face) {
-      farthest = std::max(farthest, plane_distance(mesh.vertices[vertex], regions.vertices[candidate.loop[0]], normal));
-    }
-    nearest = std::min(nearest, farthest);
+// The largest distance of a face's vertices from the plane of a region face.
+double distance_to(const TriangleMesh& mesh, const Triangle& face, const RegionBoundary& regions, int crack) {
+  const std::vector<int>& loop = regions.faces[crack].loop;
+  const Vec3& a = regions.vertices[loop[0]];
+  Vec3 normal = Vec3::Zero();  // of the polygon, by Newell's sum
+  for (std::size_t i = 1; i + 1 < loop.size(); ++i) {
+    normal += (regions.vertices[loop[i]] - a).cross(regions.vertices[loop[i + 1]] - a);
   }
-  return nearest;
+  double farthest = 0;
+  for (const int vertex : face) farthest = std::max(farthest, plane_distance(mesh.vertices[vertex], a, normal));
+  return farthest;
 }
 
 double face_area(const TriangleMesh& mesh, const Triangle& face) {
@@ -138,7 +88,10 @@ void expect_provenance(const TriangleMesh& body, const RegionBoundary& regions, 
       const Triangle& face = fragment.mesh.faces[i];
       const int source = fragment.source_face[i];
       if (source < 0) {
-        EXPECT_LE(distance_to_region(fragment.mesh, face, regions, fragment.region), tolerance);
+        const RegionBoundary::Face& crack = regions.faces[fragment.crack_face[i]];
+        const int beyond = result.fragments[fragment.neighbour[i]].region;
+        EXPECT_LE(distance_to(fragment.mesh, face, regions, fragment.crack_face[i]), tolerance);
+        EXPECT_EQ(std::minmax(fragment.region, beyond), std::minmax(crack.inside, crack.outside));
         continue;
       }
       const Triangle& parent = body.faces[source];
@@ -149,23 +102,8 @@ void expect_provenance(const TriangleMesh& body, const RegionBoundary& regions, 
     }
   }
   for (std::size_t i = 0; i < area.size(); ++i) {
-    EXPECT_NEAR(area[i], face_area(body, body.faces[i]), kConserved * face_area(body, body.faces[i]));
+    EXPECT_NEAR(area[i], face_area(body, body.faces[i]), kAreaKept * face_area(body, body.faces[i]));
   }
-}
-
-CutResult cut_silently(const TriangleMesh& body, const RegionBoundary& regions) {
-  SilentProgress progress;
-  return cut(body, regions, {}, progress);
-}
-
-bool same(const CutResult& a, const CutResult& b) {
-  if (a.fragments.size() != b.fragments.size()) return false;
-  for (std::size_t i = 0; i < a.fragments.size(); ++i) {
-    const Fragment &x = a.fragments[i], &y = b.fragments[i];
-    if (x.mesh.vertices != y.mesh.vertices || x.mesh.faces != y.mesh.faces) return false;
-    if (x.source_face != y.source_face || x.region != y.region) return false;
-  }
-  return true;
 }
 
 TriangleMesh turned_by(const TriangleMesh& mesh, std::uint64_t seed) {
@@ -192,8 +130,7 @@ TEST(Cut, KeepsEverythingOverFamiliesOfShapes) {
     ASSERT_EQ(result.status, CutStatus::ok) << result.detail;
     EXPECT_GE(result.fragments.size(), 4u);
     EXPECT_EQ(result.nudges, 0);
-    expect_solids(result);
-    expect_conserved(family.mesh, result);
+    EXPECT_EQ(broken_cut(family.mesh, result), "");
     expect_provenance(family.mesh, regions, result);
   }
 }
@@ -207,9 +144,7 @@ RC_GTEST_PROP(Cut, KeepsEverythingInAnyOrientation, ()) {
   const TriangleMesh body = turned_by(family.mesh, seed);
   const CutResult result = cut_silently(body, random_regions(body, cells, regions, seed));
   RC_ASSERT(result.status == CutStatus::ok);
-  RC_ASSERT(result.volume_error <= 1e-12);
-  expect_conserved(body, result);
-  RC_ASSERT(!testing::Test::HasFailure());
+  RC_ASSERT(broken_cut(body, result) == "");
 }
 
 TEST(Cut, FragmentsCanBeCutAgain) {
@@ -220,29 +155,29 @@ TEST(Cut, FragmentsCanBeCutAgain) {
     for (const Fragment& fragment : first.fragments) {
       const CutResult second = cut_silently(fragment.mesh, random_regions(fragment.mesh, 8, 4, 4));
       ASSERT_EQ(second.status, CutStatus::ok) << second.detail;
-      expect_solids(second);
-      expect_conserved(fragment.mesh, second);
+      EXPECT_EQ(broken_cut(fragment.mesh, second), "");
     }
   }
 }
 
-TEST(Cut, OneRegionGivesTheBodyBack) {
-  const TriangleMesh body = hollow_sphere(1, 0.2, 2);
-  const CutResult result = cut_silently(body, random_regions(body, 4, 1, 1));
+void expect_whole(const TriangleMesh& body, const CutResult& result, int region) {
   ASSERT_EQ(result.status, CutStatus::ok) << result.detail;
   ASSERT_EQ(result.fragments.size(), 1u);
-  EXPECT_EQ(result.fragments[0].mesh.faces.size(), body.faces.size());
-  std::vector<int> sources = result.fragments[0].source_face;
-  std::sort(sources.begin(), sources.end());
-  for (std::size_t i = 0; i < sources.size(); ++i) EXPECT_EQ(sources[i], static_cast<int>(i));
+  EXPECT_EQ(result.fragments[0].mesh.vertices, body.vertices);
+  EXPECT_EQ(result.fragments[0].mesh.faces, body.faces);
+  EXPECT_EQ(result.fragments[0].region, region);
+  EXPECT_EQ(broken_cut(body, result), "");
+}
+
+TEST(Cut, OneRegionGivesTheBodyBack) {
+  const TriangleMesh body = hollow_sphere(1, 0.2, 2);
+  expect_whole(body, cut_silently(body, random_regions(body, 4, 1, 1)), 0);
 }
 
 TEST(Cut, RegionsBesideTheBodyGiveNothing) {
   const TriangleMesh body = sphere(1, 2);
-  const CutResult result = cut_silently(body, halves(body, 0, 1.5));
-  ASSERT_EQ(result.status, CutStatus::ok) << result.detail;
-  ASSERT_EQ(result.fragments.size(), 1u);
-  EXPECT_EQ(result.fragments[0].region, 0);
+  expect_whole(body, cut_silently(body, halves(body, 0, 1.5)), 0);
+  expect_whole(body, cut_silently(body, halves(body, 0, -1.5)), 1);
 }
 
 TEST(Cut, ARegionMayGiveSeveralFragments) {
@@ -263,7 +198,7 @@ TEST(Cut, AVoidStaysInTheFragmentAroundIt) {
   ASSERT_EQ(result.fragments.size(), 2u);
   EXPECT_EQ(inspect(result.fragments[0].mesh).shells, 2);
   EXPECT_EQ(inspect(result.fragments[1].mesh).shells, 1);
-  expect_solids(result);
+  EXPECT_EQ(broken_cut(body, result), "");
 }
 
 TEST(Cut, CracksMayLieInFacesOfTheBody) {
@@ -271,11 +206,13 @@ TEST(Cut, CracksMayLieInFacesOfTheBody) {
   for (const int axis : {0, 1}) {
     const CutResult result = cut_silently(body, halves(body, axis, 0));
     ASSERT_EQ(result.status, CutStatus::ok) << result.detail;
-    EXPECT_EQ(result.nudges, 0);
-    ASSERT_EQ(result.fragments.size(), 2u);
-    EXPECT_NEAR(mass_properties(result.fragments[0].mesh).volume, 2, 2 * kConserved);
-    EXPECT_NEAR(mass_properties(result.fragments[1].mesh).volume, 1, kConserved);
-    expect_solids(result);
+    EXPECT_GE(result.nudges, 1);
+    // Where the crack lies just outside the face, it also cuts a film off.
+    std::map<int, double> volume;
+    for (const Fragment& fragment : result.fragments) volume[fragment.region] += mass_properties(fragment.mesh).volume;
+    EXPECT_NEAR(volume[0], 2, kNudged);
+    EXPECT_NEAR(volume[1], 1, kNudged);
+    EXPECT_EQ(broken_cut(body, result), "");
   }
 }
 
@@ -284,8 +221,7 @@ TEST(Cut, CracksMayPassThroughVerticesAndEdges) {
     for (int axis = 0; axis < 3; ++axis) {
       const CutResult result = cut_silently(body, halves(body, axis, 0));
       ASSERT_EQ(result.status, CutStatus::ok) << result.detail;
-      expect_solids(result);
-      expect_conserved(body, result);
+      EXPECT_EQ(broken_cut(body, result), "");
     }
   }
 }
@@ -324,8 +260,7 @@ TEST(Cut, CellsMayBeALattice) {
   for (const TriangleMesh& body : {box({1.5, 1.5, 1.5}), box({1, 1, 1}), l_shape(), sphere(0.8, 2)}) {
     const CutResult result = cut_silently(body, regions);
     ASSERT_EQ(result.status, CutStatus::ok) << result.detail;
-    expect_solids(result);
-    expect_conserved(body, result);
+    EXPECT_EQ(broken_cut(body, result), "");
   }
 }
 
@@ -355,15 +290,31 @@ TEST(Cut, RefusesBrokenBodies) {
   }
 }
 
+// The face between two regions nearest to the origin.
+int middle_face(const RegionBoundary& regions) {
+  int best = -1;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < regions.faces.size(); ++i) {
+    Vec3 sum = Vec3::Zero();
+    for (const int vertex : regions.faces[i].loop) sum += regions.vertices[vertex];
+    const double distance = sum.norm() / static_cast<double>(regions.faces[i].loop.size());
+    if (regions.faces[i].outside >= 0 && distance < nearest) nearest = distance, best = static_cast<int>(i);
+  }
+  return best;
+}
+
 TEST(Cut, RefusesBrokenRegions) {
   const TriangleMesh body = sphere(1, 2);
   const RegionBoundary good = random_regions(body, 6, 3, 1);
-  RegionBoundary open = good, unknown = good, flat = good, coincident = good;
-  open.faces.pop_back();
-  unknown.faces[0].inside = 17;
-  flat.faces[0].loop.resize(2);
-  coincident.vertices[good.faces[0].loop[0]] = good.vertices[good.faces[0].loop[1]];
-  for (const RegionBoundary& regions : {open, unknown, flat, coincident}) {
+  const int face = middle_face(good);
+  RegionBoundary open = good, unknown = good, flat = good, coincident = good, contradicting = good, twice = good;
+  open.faces.erase(open.faces.begin() + face);
+  unknown.faces[face].inside = 17;
+  flat.faces[face].loop.resize(2);
+  coincident.vertices[good.faces[face].loop[0]] = good.vertices[good.faces[face].loop[1]];
+  std::swap(contradicting.faces[face].inside, contradicting.faces[face].outside);
+  twice.faces.push_back(twice.faces[face]);
+  for (const RegionBoundary& regions : {open, unknown, flat, coincident, contradicting, twice}) {
     const CutResult result = cut_silently(body, regions);
     EXPECT_EQ(result.status, CutStatus::bad_input);
     EXPECT_FALSE(result.detail.empty());
@@ -371,13 +322,37 @@ TEST(Cut, RefusesBrokenRegions) {
   }
 }
 
-TEST(Cut, ReportsLostVolume) {
+TEST(Cut, RefusesCracksThatEndInside) {
   const TriangleMesh body = sphere(1, 2);
   const Box half_space(Vec3(-2, -2, -2), Vec3(2, 2, 0.3));
   const CutResult result = cut_silently(body, voronoi_regions(half_space, {{-1, 0, 0}, {1, 0, 0}}, {0, 1}));
-  EXPECT_EQ(result.status, CutStatus::volume_lost);
+  EXPECT_EQ(result.status, CutStatus::bad_input);
   EXPECT_TRUE(result.fragments.empty());
-  EXPECT_GT(result.volume_error, 0.1);
+}
+
+TEST(Cut, IgnoresTheHull) {
+  const TriangleMesh body = sphere(1, 2);
+  RegionBoundary regions = random_regions(body, 6, 3, 1);
+  const CutResult with = cut_silently(body, regions);
+  std::erase_if(regions.faces, [](const RegionBoundary::Face& face) { return face.outside < 0; });
+  const CutResult without = cut_silently(body, regions);
+  ASSERT_EQ(without.status, CutStatus::ok) << without.detail;
+  ASSERT_EQ(with.fragments.size(), without.fragments.size());
+  for (std::size_t i = 0; i < with.fragments.size(); ++i) {
+    EXPECT_EQ(with.fragments[i].mesh.vertices, without.fragments[i].mesh.vertices);
+  }
+}
+
+TEST(Cut, DoesNotDependOnThreads) {
+  const TriangleMesh body = sphere(1, 5);
+  const RegionBoundary regions = random_regions(body, 60, 30, 2);
+  std::vector<CutResult> results;
+  for (const std::size_t threads : {1, 2, 4}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    results.push_back(cut_silently(body, regions));
+    ASSERT_EQ(results.back().status, CutStatus::ok) << results.back().detail;
+    EXPECT_TRUE(same(results.front(), results.back())) << threads;
+  }
 }
 
 TEST(Cut, StopsWhenAsked) {

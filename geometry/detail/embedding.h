@@ -1,0 +1,16 @@
+#pragma once
+/// Whether triangles have nothing in common but the vertices and edges that they share.
+#include "geometry/detail/arrangement.h"
+#include "geometry/detail/box_tree.h"
+
+namespace sunder::geometry::detail {
+
+/// Of all pairs of faces. Exact, in parallel.
+bool intersects_itself(const TriangleMesh& mesh, const BoxTree& tree);
+
+/// Of the rounded parts that the cut made, against each other and against the faces of the body that it left alone.
+/// `tree` holds the faces of the body, which must not intersect each other. Parts of one face are not tested: `divide`
+/// has done so. Errors: ErrorKind::mesh when two parts meet, or when a part has no area.
+void require_embedded(const Arrangement& arrangement, const BoxTree& tree, const std::vector<char>& is_inside);
+
+}  // namespace sunder::geometry::detail
