@@ -136,7 +136,7 @@ std::vector<Fragment> divide_body(const Prepared& body, const CrackComplex& comp
   }
   detail::Labels labels = detail::label(arrangement, near, complex, is_inside);
   progress.checkpoint("cut", 0.5);
-  detail::require_embedded(arrangement, body.tree, is_inside);
+  detail::require_embedded(arrangement, near, body.tree, is_inside);
   progress.checkpoint("cut", 0.7);
   return detail::assemble(body.mesh, arrangement, near, wedges, labels);
 }

@@ -60,13 +60,41 @@ bool clash(const std::vector<Vec3>& points, Triangle first, Triangle second) {
   return edge_meets(a, b, shared) || edge_meets(b, a, shared);
 }
 
-/// What the cut made, with the number of the face that it was made of.
+/// What the cut made. Parts of one source need no test against each other.
 struct Parts {
   std::vector<Triangle> faces;
   std::vector<int> source;
 };
 
-Parts parts_of(const Arrangement& arrangement, const std::vector<char>& is_inside) {
+// The triangles of a plane polygon are as good as one: their parts overlap only if one of them is turned. Per region
+// face: whether all parts turn the same way, seen along one axis.
+std::vector<char> find_flat_faces(const Arrangement& arrangement, const CrackComplex& complex) {
+  const Divided& cracks = arrangement.cracks;
+  const std::vector<Vec3>& points = arrangement.points.positions();
+  std::vector<char> flat;
+  for (int begin = 0, end = 0; begin < cracks.face_count(); begin = end) {
+    const int polygon = complex.owner[begin].face;
+    Vec3 normal = Vec3::Zero();
+    for (; end < cracks.face_count() && complex.owner[end].face == polygon; ++end) {
+      const Triangle& face = cracks.surface.faces[end];
+      normal += (points[face[1]] - points[face[0]]).cross(points[face[2]] - points[face[0]]);
+    }
+    int axis = 0;
+    normal.cwiseAbs().maxCoeff(&axis);
+    const int x = (axis + 1) % 3, y = (axis + 2) % 3, turn = sign_of(normal[axis]);
+    flat.resize(polygon + 1, false);
+    flat[polygon] = true;
+    for (int face = begin; face < end && end - begin > 1; ++face) {
+      for_each_part(cracks, face, [&](const Triangle& part, int) {
+        const Vec3 &a = points[part[0]], &b = points[part[1]], &c = points[part[2]];
+        if (planar_orientation(a[x], a[y], b[x], b[y], c[x], c[y]) != turn) flat[polygon] = false;
+      });
+    }
+  }
+  return flat;
+}
+
+Parts parts_of(const Arrangement& arrangement, const CrackComplex& complex, const std::vector<char>& is_inside) {
   Parts parts;
   const auto add = [&](const Triangle& vertices, int source) {
     parts.faces.push_back(vertices);
@@ -77,9 +105,13 @@ Parts parts_of(const Arrangement& arrangement, const std::vector<char>& is_insid
     if (body.patch_of[face] < 0) continue;
     for_each_part(body, face, [&](const Triangle& vertices, int) { add(vertices, face); });
   }
+  const std::vector<char> flat = find_flat_faces(arrangement, complex);
+  const int first_polygon = body.face_count(), first_triangle = first_polygon + static_cast<int>(flat.size());
   for (int face = 0; face < cracks.face_count(); ++face) {
+    const int polygon = complex.owner[face].face;
+    const int source = flat[polygon] ? first_polygon + polygon : first_triangle + face;
     for_each_part(cracks, face, [&](const Triangle& vertices, int cell) {
-      if (is_inside[cell]) add(vertices, body.face_count() + face);
+      if (is_inside[cell]) add(vertices, source);
     });
   }
   return parts;
@@ -102,10 +134,11 @@ bool intersects_itself(const TriangleMesh& mesh, const BoxTree& tree) {
   return found;
 }
 
-void require_embedded(const Arrangement& arrangement, const BoxTree& tree, const std::vector<char>& is_inside) {
+void require_embedded(const Arrangement& arrangement, const CrackComplex& complex, const BoxTree& tree,
+                      const std::vector<char>& is_inside) {
   const std::vector<Vec3>& points = arrangement.points.positions();
   const Divided& body = arrangement.body;
-  const Parts parts = parts_of(arrangement, is_inside);
+  const Parts parts = parts_of(arrangement, complex, is_inside);
   const BoxTree own(points, parts.faces);
   tbb::parallel_for(std::size_t{0}, parts.faces.size(), [&](std::size_t i) {
     const Triangle& face = parts.faces[i];

@@ -1,5 +1,5 @@
-/// Speed, memory and exactness of the cut: one table, and with --json FILE the same numbers by key. Times are medians of
-/// several runs, each in a process of its own, so that its peak of memory is known.
+/// Speed, memory and exactness of the cut: one table, and with --json FILE the same numbers by key. Times are medians
+/// of several runs, each in a process of its own, so that its peak of memory is known.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -29,7 +29,7 @@ using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 constexpr int phase_count = 7;
-constexpr const char* phase_names[phase_count] = {"check input", "find crossings", "label",  "check parts",
+constexpr const char* phase_names[phase_count] = {"check input", "find crossings",  "label", "check parts",
                                                   "assemble",    "check fragments", "after"};
 
 /// Notes when each phase of the cut begins. A nudge begins anew; the last attempt is what remains.

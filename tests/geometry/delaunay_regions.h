@@ -14,7 +14,8 @@ RegionBoundary delaunay_regions(const Box& box, const std::vector<Vec3>& seeds, 
 /// Uniform points inside a closed mesh.
 std::vector<Vec3> points_inside(const TriangleMesh& body, int count, std::uint64_t seed);
 
-/// Per seed a region; the first seeds are the regions' own and take in neighbouring cells in turn, so all are connected.
+/// Per seed a region; the first seeds are the regions' own and take in neighbouring cells in turn, so all are
+/// connected.
 std::vector<int> grown_regions(const std::vector<Vec3>& seeds, int regions);
 
 /// `regions` regions, each of about `cells_each` Voronoi cells of seeds in the body.
