@@ -34,15 +34,19 @@ function(sunder_module name)
   target_link_libraries(sunder_${name} PUBLIC sunder_flags ${ARG_USES} PRIVATE ${ARG_HIDES})
 endfunction()
 
-# sunder_test(name): every tests/<name>/*_test.cpp in one program; extra libraries follow the name.
+# sunder_test(name): every tests/<name>/*_test.cpp in one program; extra libraries follow the name. Sources of the folder
+# that are not tests serve them. Suites with Slow in their name get the label slow.
 function(sunder_test name)
-  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*_test.cpp)
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
   if(NOT sources)
     return()
   endif()
   add_executable(${name}_tests ${sources})
   target_link_libraries(${name}_tests PRIVATE ${ARGN} GTest::gtest_main rapidcheck rapidcheck_gtest)
-  gtest_discover_tests(${name}_tests TEST_PREFIX ${name}. DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 300)
+  gtest_discover_tests(${name}_tests TEST_PREFIX ${name}. DISCOVERY_MODE PRE_TEST TEST_FILTER -*Slow*
+                       TEST_LIST ${name}_fast PROPERTIES TIMEOUT 300)
+  gtest_discover_tests(${name}_tests TEST_PREFIX ${name}. DISCOVERY_MODE PRE_TEST TEST_FILTER *Slow*
+                       TEST_LIST ${name}_slow PROPERTIES TIMEOUT 900 LABELS slow)
 endfunction()
 
 # Writes generated/sunder_version.h with the version and, at every build, the git revision with its dirty flag.
