@@ -59,7 +59,9 @@ struct CutSettings {
 /// Neighbours share their faces bit for bit. A body that nothing divides comes back as it is. What is delivered is
 /// closed, two-manifold and free of self-intersections; when a crack only touches a face, an edge or a vertex of the
 /// body, or rounding would break a fragment, all regions are moved together by `nudges` and the cut is made again.
-/// Fragments are ordered by region, then by their lowest vertex. The result does not depend on the number of threads.
+/// Where a region touches itself along an edge or at a vertex, each fan of faces has a vertex of its own there: the
+/// fragment is a two-manifold with coincident vertices. Fragments are ordered by region, then by their lowest vertex.
+/// The result does not depend on the number of threads.
 CutResult cut(const TriangleMesh& body, const RegionBoundary& regions, const CutSettings& settings, Progress& progress);
 
 }  // namespace sunder::geometry

@@ -15,7 +15,7 @@ class PinchFinder {
   void split(Fragment& fragment, const std::vector<CrackSide>& sides) const;
 
  private:
-  bool follows(const CrackSide& a, const CrackSide& b) const;
+  bool share_wedge(const CrackSide& a, const CrackSide& b) const;
 
   std::vector<bool> suspect_;  // per point
   const Wedges& wedges_;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "geometry/cut.h"
+#include "geometry/detail/embedding.h"
 #include "geometry/inspect.h"
 #include "geometry/mass_properties.h"
 
@@ -42,6 +43,22 @@ inline Mat3 inertia_about(const MassProperties& part, const Vec3& point) {
   return part.inertia + part.volume * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
 }
 
+/// Several vertices stand for one point.
+inline bool touches_itself(const Fragment& fragment) {
+  std::vector<int> ids = fragment.vertex_id;
+  std::sort(ids.begin(), ids.end());
+  return std::adjacent_find(ids.begin(), ids.end()) != ids.end();
+}
+
+inline TriangleMesh welded_by_id(const Fragment& fragment) {
+  TriangleMesh result = fragment.mesh;
+  std::map<int, int> first;
+  for (Triangle& face : result.faces) {
+    for (int& vertex : face) vertex = first.emplace(fragment.vertex_id[vertex], vertex).first->second;
+  }
+  return result;
+}
+
 inline std::string broken_solid(const Fragment& fragment) {
   const std::size_t faces = fragment.mesh.faces.size();
   if (fragment.source_face.size() != faces || fragment.crack_face.size() != faces ||
@@ -49,7 +66,14 @@ inline std::string broken_solid(const Fragment& fragment) {
     return "provenance does not fit the mesh";
   }
   const MeshReport report = inspect(fragment.mesh);
-  if (!report.is_solid()) return report.summary();
+  if (touches_itself(fragment)) {
+    if (!is_closed_two_manifold(fragment.mesh)) return report.summary();
+    const TriangleMesh welded = welded_by_id(fragment);
+    const detail::BoxTree tree(welded.vertices, welded.faces);
+    if (detail::intersects_itself(welded, tree)) return "intersects itself";
+  } else if (!report.is_solid()) {
+    return report.summary();
+  }
   const int chi = euler_characteristic(fragment.mesh);
   if (chi % 2 != 0 || chi > 2 * report.shells) return "Euler characteristic " + std::to_string(chi);
   return "";

@@ -264,6 +264,47 @@ TEST(Cut, CellsMayBeALattice) {
   }
 }
 
+// The faces between boxes of different regions; nothing outside the lattice.
+RegionBoundary lattice_of(const std::vector<double>& ticks, const std::vector<int>& region) {
+  RegionBoundary result = lattice_regions(ticks);
+  for (RegionBoundary::Face& face : result.faces) {
+    face.inside = region[face.inside];
+    if (face.outside >= 0) face.outside = region[face.outside];
+  }
+  result.region_count = 2;
+  return result;
+}
+
+// Regions that touch themselves along edges and at vertices, in every way in which two regions share eight octants.
+TEST(Cut, RegionsMayTouchThemselves) {
+  const TriangleMesh body = turned_by(sphere(1, 1), 3);
+  const Vec3 center = bounds(body).center();
+  for (int mask = 0; mask < 256; ++mask) {
+    std::vector<int> region(8);
+    for (int i = 0; i < 8; ++i) region[i] = mask >> i & 1;
+    RegionBoundary regions = lattice_of({-4, 0.05, 4}, region);
+    for (Vec3& x : regions.vertices) x += center;
+    const CutResult result = cut_silently(body, regions);
+    ASSERT_EQ(result.status, CutStatus::ok) << mask << ": " << result.detail;
+    EXPECT_EQ(broken_cut(body, result), "") << mask;
+  }
+}
+
+// Touching edges may also end inside the body at both ends.
+TEST(Cut, RegionsMayTouchThemselvesWithin) {
+  const TriangleMesh body = turned_by(sphere(1, 1), 3);
+  const Vec3 center = bounds(body).center();
+  for (int seed = 0; seed < 200; ++seed) {
+    std::vector<int> region(27);
+    for (int i = 0; i < 27; ++i) region[i] = random_unit(seed, 1, i) < 0.5;
+    RegionBoundary regions = lattice_of({-4, -0.31, 0.35, 4}, region);
+    for (Vec3& x : regions.vertices) x += center;
+    const CutResult result = cut_silently(body, regions);
+    ASSERT_EQ(result.status, CutStatus::ok) << seed << ": " << result.detail;
+    EXPECT_EQ(broken_cut(body, result), "") << seed;
+  }
+}
+
 TEST(Cut, IsDeterministicAndOrdered) {
   const TriangleMesh body = torus(1, 0.3, 32, 12);
   const RegionBoundary regions = random_regions(body, 20, 10, 5);
