@@ -107,14 +107,13 @@ Marks marks_of(const FineMesh& mesh, const Sheets& sheets, const Plan& plan, con
   const TimeField field(times.points, times.time, std::max(settings.grid_spacing, time_grid * times.spacing));
   add_times(mesh, sheets, field, plan.refined, marks.field);
   progress.checkpoint("detail", 0.4);
-  std::vector<Line> lines =
-      trace_lines(mesh, sheets, marks.field,
-                  {settings.line_step, settings.line_length, settings.influence_radius}, progress);
+  std::vector<Line> lines = trace_lines(
+      mesh, sheets, marks.field, {settings.line_step, settings.line_length, settings.influence_radius}, progress);
   marks.lines = static_cast<int>(lines.size());
   lines = longest(std::move(lines), settings.longest_share);
   marks.raised = static_cast<int>(lines.size());
-  marks.share = wanted_heights(mesh, sheets, settings,
-                               smear(mesh, sheets, vertices, grids, lines, settings.grid_spacing));
+  marks.share =
+      wanted_heights(mesh, sheets, settings, smear(mesh, sheets, vertices, grids, lines, settings.grid_spacing));
   return marks;
 }
 
@@ -144,8 +143,7 @@ DetailedBoundary add_surface_detail(const geometry::RegionBoundary& regions, con
   progress.checkpoint("detail", 0.2);
 
   const Marks marks = marks_of(mesh, sheets, plan, times, settings, progress);
-  std::vector<double> heights =
-      clearance(mesh, sheets, marks.field.normal, plan.height, settings.edge_length);
+  std::vector<double> heights = clearance(mesh, sheets, marks.field.normal, plan.height, settings.edge_length);
   for (std::size_t v = 0; v < heights.size(); ++v) heights[v] *= marks.share[v];
   progress.checkpoint("detail", 0.7);
   Relief relief = displaced(mesh, sheets, marks.field.normal, std::move(heights), progress);

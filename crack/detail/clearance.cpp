@@ -125,8 +125,8 @@ void limit_slope(const FineMesh& mesh, const EdgeGraph& edges, double slope, std
   }
 }
 
-std::vector<double> clearance(const FineMesh& mesh, const Sheets& sheets, const std::vector<Vec3>& normals,
-                              double most, double edge_length) {
+std::vector<double> clearance(const FineMesh& mesh, const Sheets& sheets, const std::vector<Vec3>& normals, double most,
+                              double edge_length) {
   std::vector<double> values(mesh.vertices.size(), 0);
   for (std::size_t v = 0; v < values.size(); ++v)
     if (sheets.of_vertex[v] >= 0) values[v] = most;

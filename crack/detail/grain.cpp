@@ -25,9 +25,8 @@ double octave(const Vec3& x, std::uint64_t seed, std::uint64_t stream) {
 
 double grain_at(const Vec3& x, double size, std::uint64_t seed) {
   // Turned out of the axes, along which bodies like to break: 2/3, 2/3, 1/3 and its kin are an orthonormal frame.
-  const Vec3 turned = Vec3(2 * x.x() - x.y() + 2 * x.z(), 2 * x.x() + 2 * x.y() - x.z(),
-                           -x.x() + 2 * x.y() + 2 * x.z()) /
-                      (3 * size);
+  const Vec3 turned =
+      Vec3(2 * x.x() - x.y() + 2 * x.z(), 2 * x.x() + 2 * x.y() - x.z(), -x.x() + 2 * x.y() + 2 * x.z()) / (3 * size);
   constexpr std::uint64_t stream = 0x6772'6169'6e00;
   return (2 * octave(turned, seed, stream) + octave(2 * turned, seed, stream + 1)) / 3;
 }

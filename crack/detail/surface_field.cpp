@@ -8,6 +8,7 @@ namespace sunder::crack::detail {
 namespace {
 
 constexpr double least_tangential = 0.2;  // share of the gradient that has to lie in the surface
+constexpr double least_outward = 0.7;     // cosine between the normal and the direction in which nothing is known
 constexpr double least_sum = 1e-3;        // of smoothed normals: less means that the sheet is folded back on itself
 
 Vec3 unit_or_zero(const Vec3& v) {
@@ -28,6 +29,13 @@ std::vector<Vec3> area_normals(const FineMesh& mesh, const Sheets& sheets) {
 }
 
 Vec3 tangential(const Vec3& v, const Vec3& normal) { return v - normal * normal.dot(v); }
+
+/// Does the sample say where the front ran in the surface?
+bool runs_along(const TimeField::Sample& sample, const Vec3& normal) {
+  const double steepness = sample.gradient.norm();
+  const bool open_outward = sample.open.isZero() || std::abs(sample.open.dot(normal)) >= least_outward;
+  return open_outward && steepness > 0 && tangential(sample.gradient, normal).norm() >= least_tangential * steepness;
+}
 
 /// The nearest known vertex along edges, per vertex: itself where known, -1 where there is none.
 std::vector<int> nearest_known(const FineMesh& mesh, const Sheets& sheets, const std::vector<char>& known) {
@@ -94,8 +102,7 @@ void add_times(const FineMesh& mesh, const Sheets& sheets, const TimeField& time
     if (!box.contains(mesh.vertices[v])) continue;
     const auto sample = times.at(mesh.vertices[v]);
     if (!sample) continue;
-    const double steepness = sample->gradient.norm();
-    known[v] = steepness > 0 && tangential(sample->gradient, field.normal[v]).norm() >= least_tangential * steepness;
+    known[v] = runs_along(*sample, field.normal[v]);
     field.time[v] = std::max(0.0, sample->time);
     gradient[v] = sample->gradient;
   }

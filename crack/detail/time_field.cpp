@@ -9,24 +9,30 @@ namespace sunder::crack::detail {
 
 namespace {
 
-constexpr double least_weight = 1e-6;    // of a node: below it, its means are rounding
-constexpr double least_support = 0.01;   // sum of the weights of the nodes with data
-constexpr double flat = 1e-6;            // variance across a plane over the variance within
-constexpr double narrow = 1e-3;          // variance across a line over the variance along it
-constexpr double well_conditioned = 1e-3;
+constexpr double least_weight = 1e-6;  // of a node: below it, its means are rounding
+constexpr double least_support = 0.2;  // sum of the weights of the nodes with data
+constexpr double flat = 1e-3;          // variance across a plane over the variance within
+constexpr double narrow = 1e-2;        // variance across a line over the variance along it
+constexpr double well_conditioned = 1e-2;
+
+struct Solution {
+  Vec3 gradient, open;
+};
 
 /// Solves moment * g = right in the directions that the nodes span; nothing when those are fewer than two.
-std::optional<Vec3> spanned_solution(const Mat3& moment, const Vec3& right) {
+std::optional<Solution> spanned_solution(const Mat3& moment, const Vec3& right) {
   const double mean = moment.trace() / 3;
   if (!(mean > 0)) return std::nullopt;
-  if (moment.determinant() > well_conditioned * mean * mean * mean) return moment.inverse() * right;
+  if (moment.determinant() > well_conditioned * mean * mean * mean)
+    return Solution{moment.inverse() * right, Vec3::Zero()};
   const Eigen::SelfAdjointEigenSolver<Mat3> eigen(moment);
   const Vec3 values = eigen.eigenvalues();
   if (values[1] < narrow * values[2]) return std::nullopt;
+  const bool plane = values[0] < flat * values[2];
   Vec3 g = Vec3::Zero();
-  for (int i = values[0] < flat * values[2] ? 1 : 0; i < 3; ++i)
+  for (int i = plane; i < 3; ++i)
     g += eigen.eigenvectors().col(i) * (eigen.eigenvectors().col(i).dot(right) / values[i]);
-  return g;
+  return Solution{g, plane ? Vec3(eigen.eigenvectors().col(0)) : Vec3::Zero()};
 }
 
 }  // namespace
@@ -52,7 +58,7 @@ TimeField::TimeField(const std::vector<Vec3>& points, const std::vector<double>&
 }
 
 std::optional<TimeField::Sample> TimeField::at(const Vec3& x) const {
-  double total = 0, time = 0, earliest = std::numeric_limits<double>::infinity(), latest = -earliest;
+  double total = 0, time = 0;
   Vec3 first = Vec3::Zero(), times_offset = Vec3::Zero();
   Mat3 second = Mat3::Zero();
   int reference = -1;
@@ -67,15 +73,13 @@ std::optional<TimeField::Sample> TimeField::at(const Vec3& x) const {
     first += w * r;
     second += w * r * r.transpose();
     times_offset += w * t * r;
-    earliest = std::min(earliest, nodes_[n].time);
-    latest = std::max(latest, nodes_[n].time);
   });
   if (total < least_support) return std::nullopt;
   const Mat3 moment = second - first * first.transpose() / total;
-  const std::optional<Vec3> g = spanned_solution(moment, times_offset - first * (time / total));
-  if (!g) return std::nullopt;
-  const double here = nodes_[reference].time + (time - g->dot(first)) / total;
-  return Sample{std::clamp(here, earliest, latest), *g};
+  const std::optional<Solution> fit = spanned_solution(moment, times_offset - first * (time / total));
+  if (!fit) return std::nullopt;
+  const double here = nodes_[reference].time + (time - fit->gradient.dot(first)) / total;
+  return Sample{here, fit->gradient, fit->open};
 }
 
 }  // namespace sunder::crack::detail

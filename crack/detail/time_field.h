@@ -17,13 +17,15 @@ class TimeField {
   bool empty() const { return nodes_.empty(); }
 
   struct Sample {
-    double time = 0;                ///< [s]
-    Vec3 gradient = Vec3::Zero();   ///< [s/m]
+    double time = 0;               ///< [s]
+    Vec3 gradient = Vec3::Zero();  ///< [s/m]
+    Vec3 open = Vec3::Zero();      ///< unit direction in which the gradient is not known; zero: it is known
   };
 
   /// A linear fit to the nodes around `x`, weighted by their splines (in place of Fan 2024, eq. 3.14, to which it
   /// reduces on full stencils): exact for linear fields whatever nodes have data. Nodes of a thin sheet of damage can
-  /// span a plane only; then the gradient is the one within the plane. Nothing where the nodes span less.
+  /// span a plane only; then the gradient is the one within the plane. Nothing where the nodes span less, or at the rim
+  /// of the data.
   std::optional<Sample> at(const Vec3& x) const;
 
  private:

@@ -33,8 +33,7 @@ geometry::RegionBoundary split_block() {
   regions.region_count = 2;
   const auto corner = [](int i) { return -0.12 + 1.24 * i / cells; };
   for (int i = 0; i <= cells; ++i)
-    for (int k = 0; k <= cells; ++k)
-      regions.vertices.emplace_back(corner(i), sheet(corner(i), corner(k)), corner(k));
+    for (int k = 0; k <= cells; ++k) regions.vertices.emplace_back(corner(i), sheet(corner(i), corner(k)), corner(k));
   const auto id = [](int i, int k) { return i * (cells + 1) + k; };
   for (int i = 0; i < cells; ++i)
     for (int k = 0; k < cells; ++k) {
