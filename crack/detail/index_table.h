@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/random.h"
 #include "core/types.h"
 
 namespace sunder::crack::detail {
@@ -40,7 +39,11 @@ class IndexTable {
     int number = -1;
   };
 
-  std::size_t slot(std::uint64_t key) const { return (key * 0x9E3779B97F4A7C15ULL >> 20) & mask_; }
+  /// Two multiplications: all bits of the key have to reach the low bits, or neighbouring cells share slots.
+  std::size_t slot(std::uint64_t key) const {
+    const std::uint64_t spread = key * 0x9E3779B97F4A7C15ULL;
+    return ((spread ^ spread >> 32) * 0xD6E8FEB86659FD93ULL >> 32) & mask_;
+  }
 
   void rehash(std::size_t wanted) {
     std::size_t n = 16;

@@ -25,14 +25,19 @@ std::optional<Solution> spanned_solution(const Mat3& moment, const Vec3& right) 
   if (!(mean > 0)) return std::nullopt;
   if (moment.determinant() > well_conditioned * mean * mean * mean)
     return Solution{moment.inverse() * right, Vec3::Zero()};
-  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(moment);
+  Eigen::SelfAdjointEigenSolver<Mat3> eigen;
+  eigen.computeDirect(moment);
   const Vec3 values = eigen.eigenvalues();
   if (values[1] < narrow * values[2]) return std::nullopt;
-  const bool plane = values[0] < flat * values[2];
-  Vec3 g = Vec3::Zero();
-  for (int i = plane; i < 3; ++i)
-    g += eigen.eigenvectors().col(i) * (eigen.eigenvectors().col(i).dot(right) / values[i]);
-  return Solution{g, plane ? Vec3(eigen.eigenvectors().col(0)) : Vec3::Zero()};
+  if (values[0] >= flat * values[2]) return Solution{moment.inverse() * right, Vec3::Zero()};
+  // The closed form of the eigenvectors is good to 1e-8 only. Any basis of the plane will do, and what it is off the
+  // plane enters squared.
+  const Vec3 open = eigen.eigenvectors().col(0).normalized();
+  Eigen::Matrix<double, 3, 2> basis;
+  basis.col(0) = open.unitOrthogonal();
+  basis.col(1) = open.cross(basis.col(0));
+  const Eigen::Matrix2d within = basis.transpose() * moment * basis;
+  return Solution{basis * (within.inverse() * (basis.transpose() * right)), open};
 }
 
 }  // namespace
