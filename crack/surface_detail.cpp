@@ -18,8 +18,8 @@ namespace {
 using namespace detail;
 
 constexpr double time_grid = 1.5;        // finest grid of the damage time, in spacings: a finer one has holes
-constexpr double growth_outside = 0.5;   // of edges, per distance from the body
-constexpr double largest_share = 0.1;    // of the body's diagonal: no vertex moves farther
+constexpr double growth_outside = 1;     // of edges, per distance from the body
+constexpr double largest_share = 0.05;   // of the body's diagonal: no vertex moves farther
 constexpr double finest_grid = 1 << 18;  // cells along the body's diagonal
 constexpr double hardly_less = 1 - 1e-9;
 

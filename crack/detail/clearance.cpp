@@ -1,5 +1,6 @@
 #include "crack/detail/clearance.h"
 
+#include <cmath>
 #include <queue>
 
 namespace sunder::crack::detail {
@@ -60,10 +61,10 @@ class CoarseCells {
     }
   }
 
-  /// All patches at most `reach` cells away, by the coarse cell of the first; remembers the last answer.
+  /// All patches at most `reach` cells away; remembers the last answer.
   const std::vector<int>& around(const Cell& cell, int reach) {
-    if (known_ && cell == last_) return found_;
-    known_ = true;
+    if (reach == last_reach_ && cell == last_) return found_;
+    last_reach_ = reach;
     last_ = cell;
     found_.clear();
     for (int i = -reach; i <= reach; ++i)
@@ -78,12 +79,32 @@ class CoarseCells {
  private:
   IndexTable table_;
   std::vector<std::vector<int>> lists_;
-  bool known_ = false;
+  int last_reach_ = -1;
   Cell last_ = Cell::Zero();
   std::vector<int> found_;
 };
 
-void limit_by_distance(const FineMesh& mesh, const std::vector<Patch>& patches, double reach,
+struct Facing {
+  double distance;
+  int patch;
+  bool operator<(const Facing& other) const {
+    return distance != other.distance ? distance < other.distance : patch < other.patch;
+  }
+};
+
+/// Patches of other sheets, and such that face the patch, up to a distance; nearest first.
+void find_facing(const std::vector<Patch>& patches, int p, const std::vector<int>& around, double reach,
+                 std::vector<Facing>& result) {
+  result.clear();
+  for (int q : around) {
+    if (patches[p].sheet == patches[q].sheet && patches[p].normal.dot(patches[q].normal) >= 0) continue;
+    const double squared = patches[p].box.squaredExteriorDistance(patches[q].box);
+    if (squared < reach * reach) result.push_back({std::sqrt(squared), q});
+  }
+  std::sort(result.begin(), result.end());
+}
+
+void limit_by_distance(const FineMesh& mesh, const std::vector<Patch>& patches, double coarse,
                        std::vector<double>& values) {
   CoarseCells cells(patches);
   std::vector<int> order(patches.size());
@@ -92,14 +113,21 @@ void limit_by_distance(const FineMesh& mesh, const std::vector<Patch>& patches, 
     const std::uint64_t ka = cell_key(patches[a].cell), kb = cell_key(patches[b].cell);
     return ka != kb ? ka < kb : a < b;
   });
-  for (int p : order)
-    for (int q : cells.around(patches[p].cell, 2)) {
-      const bool same = patches[p].sheet == patches[q].sheet;
-      if (same && patches[p].normal.dot(patches[q].normal) >= 0) continue;
-      if (patches[p].box.exteriorDistance(patches[q].box) > reach) continue;
-      for (int v : patches[p].vertices)
-        values[v] = std::min(values[v], share_of_distance * patches[q].box.exteriorDistance(mesh.vertices[v]));
+  std::vector<Facing> facing;
+  for (int p : order) {
+    double highest = 0;
+    for (int v : patches[p].vertices) highest = std::max(highest, values[v]);
+    const double reach = highest / share_of_distance;
+    find_facing(patches, p, cells.around(patches[p].cell, static_cast<int>(std::ceil(reach / coarse))), reach, facing);
+    for (const Facing& other : facing) {
+      if (share_of_distance * other.distance >= highest) break;
+      highest = 0;
+      for (int v : patches[p].vertices) {
+        const double bound = share_of_distance * patches[other.patch].box.exteriorDistance(mesh.vertices[v]);
+        highest = std::max(highest, values[v] = std::min(values[v], bound));
+      }
     }
+  }
 }
 
 }  // namespace
@@ -132,7 +160,8 @@ std::vector<double> clearance(const FineMesh& mesh, const Sheets& sheets, const 
     if (sheets.of_vertex[v] >= 0) values[v] = most;
   const double reach = most / share_of_distance;
   const double fine = std::max(reach / (2 * patches_per_cell), edge_length);
-  limit_by_distance(mesh, patches_of(mesh, sheets, normals, fine), reach, values);
+  limit_slope(mesh, sheets.edges, slope_from_fixed, values);  // before, so that fewer distances are asked for
+  limit_by_distance(mesh, patches_of(mesh, sheets, normals, fine), patches_per_cell * fine, values);
   limit_slope(mesh, sheets.edges, slope_from_fixed, values);
   return values;
 }

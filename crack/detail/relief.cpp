@@ -10,12 +10,16 @@ namespace {
 constexpr double steepest = 1.0;
 constexpr double least_cosine = 0.3;
 constexpr int halvings = 8;      // of a vertex, before it goes back to where it was
-constexpr double sliver = 1e-6;  // height over longest edge: the normal of a flatter triangle means nothing
+constexpr double sliver = 0.01;  // height over longest edge: the normal of a flatter triangle means nothing
 
 class Settling {
  public:
   Settling(const FineMesh& mesh, const Sheets& sheets, const std::vector<Vec3>& normals, std::vector<double> heights)
-      : mesh_(mesh), sheets_(sheets), normals_(normals), times_lowered_(heights.size(), 0) {
+      : mesh_(mesh),
+        sheets_(sheets),
+        normals_(normals),
+        checked_(heights.size(), 0),
+        times_lowered_(heights.size(), 0) {
     relief_.height = std::move(heights);
     relief_.vertices = mesh.vertices;
     for (const auto& [a, b, c] : mesh.faces) {
@@ -66,9 +70,12 @@ class Settling {
     return result;
   }
 
-  std::vector<int> crossing() const {
-    std::vector<char> moves(mesh_.faces.size());
-    for (int f = 0; f < static_cast<int>(moves.size()); ++f) moves[f] = moved(f);
+  /// Only triangles that moved since the last time can have come to cross another one.
+  std::vector<int> crossing() {
+    std::vector<char> moves(mesh_.faces.size(), 0);
+    for (std::size_t f = 0; f < moves.size(); ++f)
+      for (int v : mesh_.faces[f]) moves[f] |= relief_.height[v] != checked_[v];
+    checked_ = relief_.height;
     std::vector<int> result;
     for (const auto& [f, g] : crossings(mesh_, relief_.vertices, moves)) {
       result.push_back(f);
@@ -96,6 +103,7 @@ class Settling {
   const Sheets& sheets_;
   const std::vector<Vec3>& normals_;
   std::vector<Vec3> flat_normal_;  // of triangles before they move; zero for slivers
+  std::vector<double> checked_;    // heights at the last check of crossings
   std::vector<int> times_lowered_;
   Relief relief_;
 };
