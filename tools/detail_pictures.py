@@ -33,14 +33,14 @@ def load(path):
 
 def camera(vertices):
     """Pixel coordinates and depth, seen obliquely from above."""
-    forward = np.array([-0.45, -1.0, -0.75])
+    forward = np.array([-0.1, -1.0, -0.6])
     forward /= np.linalg.norm(forward)
     right = np.cross(forward, [0, 1, 0])
     right /= np.linalg.norm(right)
     up = np.cross(right, forward)
     centred = vertices - [0.5, 0.5, 0.5]
-    scale = SIZE / 1.32
-    return SIZE / 2 + scale * centred @ right, SIZE / 2 - scale * centred @ up, centred @ forward
+    scale = SIZE / 1.16
+    return SIZE / 2 + scale * centred @ right, SIZE / 2 + 14 - scale * centred @ up, centred @ forward
 
 
 def smooth_normals(vertices, faces):
@@ -57,7 +57,7 @@ def lit(normals, colour, shine):
     """A low sun, some sky, and a highlight."""
     sun = np.array([0.85, 0.42, -0.35])
     sun /= np.linalg.norm(sun)
-    view = np.array([0.45, 1.0, 0.75])
+    view = np.array([0.1, 1.0, 0.6])
     view /= np.linalg.norm(view)
     half = (sun + view) / np.linalg.norm(sun + view)
     light = 0.16 + 0.10 * normals[:, 1:2] + 1.05 * np.maximum(normals @ sun, 0)[:, None]

@@ -14,17 +14,17 @@ namespace {
 using namespace sunder;
 
 constexpr double pi = std::numbers::pi;
-constexpr int cells = 40;  // of the sheet, along a side
+constexpr int cells = 100;  // of the sheet, along a side
 
 /// A sheet across the unit block.
 double sheet(double x, double z) {
-  return 0.5 + 0.06 * std::sin(2.1 * pi * x + 0.4) * std::cos(1.7 * pi * z) + 0.03 * std::sin(3.3 * pi * z + 1 + x);
+  return 0.5 + 0.035 * std::sin(2.1 * pi * x + 0.4) * std::cos(1.7 * pi * z) + 0.015 * std::sin(3.3 * pi * z + 1 + x);
 }
 
 /// When a front from one corner arrives: it spreads with a speed that varies from place to place.
 double arrival(double x, double z) {
   const double r = std::hypot(x + 0.05, z - 0.35);
-  return r * (1 + 0.08 * std::sin(9 * x + 4 * z) + 0.05 * std::sin(17 * z - 6 * x));
+  return r * (1 + 0.05 * std::sin(9 * x + 4 * z) + 0.025 * std::sin(17 * z - 6 * x));
 }
 
 /// The sheet between two regions that fill the block, enlarged by 0.12.

@@ -182,7 +182,7 @@ RC_GTEST_PROP(SurfaceDetail, IsValidWhateverIsAsked, ()) {
     return low * std::pow(high / low, *rc::gen::inRange(0, 1001) / 1000.0);
   };
   DetailSettings settings;
-  settings.edge_length = length(0.03, 0.2);
+  settings.edge_length = length(0.05, 0.2);
   settings.line_step = length(0.01, 0.5);
   settings.line_length = length(0.02, 3);
   settings.influence_radius = length(0.01, 0.5);
@@ -296,10 +296,10 @@ TEST(DetailPreset, EveryLookIsValidAndUnknownOnesAreRefused) {
   EXPECT_EQ(detail_preset_names().size(), 8u);
   for (const std::string& name : detail_preset_names()) {
     SCOPED_TRACE(name);
-    const DetailedBoundary result = detailed(complexes()[2].boundary, detail_preset(name, 2));
+    const DetailedBoundary result = detailed(complexes()[2].boundary, detail_preset(name, 4));
     EXPECT_EQ(defect(result), "");
     EXPECT_GT(result.largest_height, 0);
-    EXPECT_EQ(detail_preset(name, 2).height, 2 * detail_preset(name, 1).height);
+    EXPECT_EQ(detail_preset(name, 4).height, 4 * detail_preset(name, 1).height);
   }
   try {
     detail_preset("cheese", 1);
