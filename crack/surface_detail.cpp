@@ -107,7 +107,7 @@ Marks marks_of(const FineMesh& mesh, const Sheets& sheets, const Plan& plan, con
   const TimeField field(times.points, times.time, std::max(settings.grid_spacing, time_grid * times.spacing));
   add_times(mesh, sheets, field, plan.refined, marks.field);
   progress.checkpoint("detail", 0.4);
-  std::vector<Line> lines = trace_lines(
+  std::vector<Chevron> lines = trace_lines(
       mesh, sheets, marks.field, {settings.line_step, settings.line_length, settings.influence_radius}, progress);
   marks.lines = static_cast<int>(lines.size());
   lines = longest(std::move(lines), settings.longest_share);

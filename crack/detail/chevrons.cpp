@@ -26,11 +26,12 @@ class VertexCells {
   /// Calls visit(vertex) for the vertices in all cells that a ball touches, and may be more.
   template <typename Visit>
   void for_each_near(const Vec3& x, double radius, Visit&& visit) const {
-    const Cell low = cell_of(x - Vec3::Constant(radius), width_), high = cell_of(x + Vec3::Constant(radius), width_);
+    const GridCell low = cell_of(x - Vec3::Constant(radius), width_),
+                   high = cell_of(x + Vec3::Constant(radius), width_);
     for (int i = low.x(); i <= high.x(); ++i)
       for (int j = low.y(); j <= high.y(); ++j)
         for (int k = low.z(); k <= high.z(); ++k) {
-          const int c = table_.find(cell_key(Cell(i, j, k)));
+          const int c = table_.find(cell_key(GridCell(i, j, k)));
           if (c < 0) continue;
           for (int e = start_[c]; e < start_[c + 1]; ++e) visit(entries_[e]);
         }
@@ -55,8 +56,8 @@ class Tracer {
 
   bool visited(int v) const { return visited_[v]; }
 
-  Line trace(int start) {
-    Line line{{start}, 0};
+  Chevron trace(int start) {
+    Chevron line{{start}, 0};
     visit_beside(start);
     for (int v = start; line.length < settings_.length;) {
       const int next = step_from(v);
@@ -108,25 +109,25 @@ class Tracer {
 
 }  // namespace
 
-std::vector<Line> trace_lines(const FineMesh& mesh, const Sheets& sheets, const SurfaceField& field,
-                              const LineSettings& settings, Progress& progress) {
+std::vector<Chevron> trace_lines(const FineMesh& mesh, const Sheets& sheets, const SurfaceField& field,
+                                 const LineSettings& settings, Progress& progress) {
   std::vector<int> order;
   for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v)
     if (sheets.of_vertex[v] >= 0 && !field.direction[v].isZero()) order.push_back(v);
   Tracer tracer(mesh, sheets, field, settings, order);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return field.time[a] < field.time[b]; });
-  std::vector<Line> lines;
+  std::vector<Chevron> lines;
   for (int start : order) {
     if (tracer.visited(start)) continue;
-    Line line = tracer.trace(start);
+    Chevron line = tracer.trace(start);
     if (line.vertices.size() > 1) lines.push_back(std::move(line));
   }
   progress.checkpoint("detail", 0.5);
   return lines;
 }
 
-std::vector<Line> longest(std::vector<Line> lines, double share) {
-  std::stable_sort(lines.begin(), lines.end(), [](const Line& a, const Line& b) {
+std::vector<Chevron> longest(std::vector<Chevron> lines, double share) {
+  std::stable_sort(lines.begin(), lines.end(), [](const Chevron& a, const Chevron& b) {
     return a.length != b.length ? a.length > b.length : a.vertices.front() < b.vertices.front();
   });
   lines.resize(static_cast<std::size_t>(std::ceil(share * static_cast<double>(lines.size()))));
@@ -134,10 +135,10 @@ std::vector<Line> longest(std::vector<Line> lines, double share) {
 }
 
 std::vector<double> smear(const FineMesh& mesh, const Sheets& sheets, const std::vector<std::vector<int>>& vertices,
-                          const std::vector<SheetGrid>& grids, const std::vector<Line>& lines, double spacing) {
+                          const std::vector<SheetGrid>& grids, const std::vector<Chevron>& lines, double spacing) {
   std::vector<std::vector<double>> nodes(grids.size());
   for (std::size_t s = 0; s < grids.size(); ++s) nodes[s].assign(grids[s].node_count(), 0);
-  for (const Line& line : lines) {
+  for (const Chevron& line : lines) {
     const int s = sheets.of_vertex[line.vertices.front()];
     double way = 0;
     for (std::size_t i = 1; i < line.vertices.size(); ++i) {

@@ -7,7 +7,7 @@
 
 namespace sunder::crack::detail {
 
-struct Line {
+struct Chevron {
   std::vector<int> vertices;  ///< from the earliest on
   double length = 0;          ///< [m]
 };
@@ -23,15 +23,15 @@ struct LineSettings {
 /// unvisited vertex of its sheet is within half a step of where it steps to. A step marks what lies within the radius
 /// across and half a step along: the strips of successive steps join. The start has a strip too. Lines of one vertex
 /// are not lines. Ties are decided by the index of the vertex.
-std::vector<Line> trace_lines(const FineMesh& mesh, const Sheets& sheets, const SurfaceField& field,
-                              const LineSettings& settings, Progress& progress);
+std::vector<Chevron> trace_lines(const FineMesh& mesh, const Sheets& sheets, const SurfaceField& field,
+                                 const LineSettings& settings, Progress& progress);
 
 /// The longest lines: a share of them, rounded up; all of equal rank by index of their first vertex.
-std::vector<Line> longest(std::vector<Line> lines, double share);
+std::vector<Chevron> longest(std::vector<Chevron> lines, double share);
 
 /// The perturbation b of every vertex: lines as curves with values 1 at the source to 2 at the end, smeared over the
 /// grid and back. The curve's length in units of the grid spacing is its weight.
 std::vector<double> smear(const FineMesh& mesh, const Sheets& sheets, const std::vector<std::vector<int>>& vertices,
-                          const std::vector<SheetGrid>& grids, const std::vector<Line>& lines, double spacing);
+                          const std::vector<SheetGrid>& grids, const std::vector<Chevron>& lines, double spacing);
 
 }  // namespace sunder::crack::detail

@@ -13,7 +13,7 @@ constexpr int patches_per_cell = 4;  // along an axis
 
 /// Vertices of one sheet, close to each other and facing the same of six ways.
 struct Patch {
-  Cell cell;  // coarse
+  GridCell cell;  // coarse
   int sheet = 0;
   Box box;
   Vec3 normal = Vec3::Zero();  // not of unit length
@@ -34,7 +34,7 @@ std::vector<Patch> patches_of(const FineMesh& mesh, const Sheets& sheets, const 
   for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v) {
     const int sheet = sheets.of_vertex[v];
     if (sheet < 0) continue;
-    const Cell cell = cell_of(mesh.vertices[v], fine);
+    const GridCell cell = cell_of(mesh.vertices[v], fine);
     const auto number = static_cast<std::uint64_t>(cells.insert(cell_key(cell)));
     const std::uint64_t key = number << 32 | (static_cast<std::uint64_t>(sheet) * 6 + facing(normals[v]));
     const int p = patches_table.insert(key);
@@ -62,7 +62,7 @@ class CoarseCells {
   }
 
   /// All patches at most `reach` cells away; remembers the last answer.
-  const std::vector<int>& around(const Cell& cell, int reach) {
+  const std::vector<int>& around(const GridCell& cell, int reach) {
     if (reach == last_reach_ && cell == last_) return found_;
     last_reach_ = reach;
     last_ = cell;
@@ -70,7 +70,7 @@ class CoarseCells {
     for (int i = -reach; i <= reach; ++i)
       for (int j = -reach; j <= reach; ++j)
         for (int k = -reach; k <= reach; ++k) {
-          const int c = table_.find(cell_key(cell + Cell(i, j, k)));
+          const int c = table_.find(cell_key(cell + GridCell(i, j, k)));
           if (c >= 0) found_.insert(found_.end(), lists_[c].begin(), lists_[c].end());
         }
     return found_;
@@ -80,7 +80,7 @@ class CoarseCells {
   IndexTable table_;
   std::vector<std::vector<int>> lists_;
   int last_reach_ = -1;
-  Cell last_ = Cell::Zero();
+  GridCell last_ = GridCell::Zero();
   std::vector<int> found_;
 };
 

@@ -63,16 +63,16 @@ class Pairs {
 /// Boxes of triangles sorted into the cells that they touch.
 struct Bins {
   std::vector<Box> boxes;  // per triangle; empty where it is left out
-  std::vector<Cell> cells;
+  std::vector<GridCell> cells;
   std::vector<int> start, faces;
   double width = 1;
 
   template <typename Visit>
   void for_each_cell(int f, Visit&& visit) {
-    const Cell low = cell_of(boxes[f].min(), width), high = cell_of(boxes[f].max(), width);
+    const GridCell low = cell_of(boxes[f].min(), width), high = cell_of(boxes[f].max(), width);
     for (int i = low.x(); i <= high.x(); ++i)
       for (int j = low.y(); j <= high.y(); ++j)
-        for (int k = low.z(); k <= high.z(); ++k) visit(Cell(i, j, k));
+        for (int k = low.z(); k <= high.z(); ++k) visit(GridCell(i, j, k));
   }
 };
 
@@ -107,7 +107,7 @@ Bins sorted_bins(const FineMesh& mesh, const std::vector<Vec3>& positions, const
   std::vector<std::pair<int, int>> entries;  // cell, triangle
   entries.reserve(4 * chosen.size());
   for (int f : chosen)
-    bins.for_each_cell(f, [&](const Cell& cell) {
+    bins.for_each_cell(f, [&](const GridCell& cell) {
       const int c = table.insert(cell_key(cell));
       if (c == static_cast<int>(bins.cells.size())) bins.cells.push_back(cell);
       entries.emplace_back(c, f);

@@ -8,12 +8,12 @@ namespace {
 
 /// Value noise of one lattice with unit cells.
 double octave(const Vec3& x, std::uint64_t seed, std::uint64_t stream) {
-  const Cell base = cell_of(x, 1);
+  const GridCell base = cell_of(x, 1);
   const Vec3 f = x - base.cast<double>();
   const Vec3 t = (f.array().square() * (3 - 2 * f.array())).matrix();
   double sum = 0;
   for (int corner = 0; corner < 8; ++corner) {
-    const Cell offset(corner & 1, corner >> 1 & 1, corner >> 2);
+    const GridCell offset(corner & 1, corner >> 1 & 1, corner >> 2);
     double w = 1;
     for (int axis = 0; axis < 3; ++axis) w *= offset[axis] ? t[axis] : 1 - t[axis];
     sum += w * random_unit(seed, stream, cell_key(base + offset));

@@ -63,18 +63,18 @@ class IndexTable {
   int size_ = 0;
 };
 
-using Cell = Eigen::Vector3i;
+using GridCell = Eigen::Vector3i;
 
 constexpr int largest_cell = (1 << 20) - 2;  ///< cell coordinates must lie within plus and minus this
 
 /// A cell of a grid as a key.
-inline std::uint64_t cell_key(const Cell& cell) {
+inline std::uint64_t cell_key(const GridCell& cell) {
   assert(cell.cwiseAbs().maxCoeff() <= largest_cell + 1);
   const auto part = [&](int axis) { return static_cast<std::uint64_t>(cell[axis] + (1 << 20)); };
   return part(0) << 42 | part(1) << 21 | part(2);
 }
 
-inline Cell cell_of(const Vec3& x, double width) { return (x / width).array().floor().cast<int>(); }
+inline GridCell cell_of(const Vec3& x, double width) { return (x / width).array().floor().cast<int>(); }
 
 /// An undirected edge as a key.
 inline std::uint64_t edge_key(int a, int b) {

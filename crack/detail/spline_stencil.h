@@ -6,8 +6,8 @@ namespace sunder::crack::detail {
 
 /// Nodes lie at integer multiples of the spacing.
 struct SplineStencil {
-  Cell base;    ///< the lowest of the 3 x 3 x 3 nodes
-  Mat3 weight;  ///< weight(axis, offset): their products are the nodes' weights and add up to 1
+  GridCell base;  ///< the lowest of the 3 x 3 x 3 nodes
+  Mat3 weight;    ///< weight(axis, offset): their products are the nodes' weights and add up to 1
 
   SplineStencil(const Vec3& x, double spacing) {
     const Vec3 scaled = x / spacing;
@@ -24,7 +24,7 @@ struct SplineStencil {
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) {
         const double w = weight(0, i) * weight(1, j);
-        for (int k = 0; k < 3; ++k) visit(cell_key(base + Cell(i, j, k)), w * weight(2, k));
+        for (int k = 0; k < 3; ++k) visit(cell_key(base + GridCell(i, j, k)), w * weight(2, k));
       }
   }
 };
