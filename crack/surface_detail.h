@@ -19,13 +19,12 @@ struct DamageTimes {
 
 /// The six controls of Fan (2024), table 3.2, and a grain that makes surfaces of granular materials.
 struct DetailSettings {
-  double edge_length = 0;  ///< d: no edge near the body stays longer [m]
-  double line_step = 0;    ///< step of a line; longer: lines with fewer bends [m]
-  double line_length = 0;  ///< l_c: the longest line [m]
-  double influence_radius =
-      0;                     ///< s: no other line runs so near beside a line; larger: fewer lines, flatter between [m]
-  double grid_spacing = 0;   ///< h_c: width to which lines are smeared; larger: smoother [m]
-  double height = 0;         ///< G: bound of the displacement [m]; at most a twentieth of the body's diagonal is used
+  double edge_length = 0;       ///< d: no edge near the body stays longer [m]
+  double line_step = 0;         ///< step of a line; longer: lines with fewer bends [m]
+  double line_length = 0;       ///< l_c: the longest line [m]
+  double influence_radius = 0;  ///< s: no other line runs so near beside one [m]; larger: fewer lines, flatter between
+  double grid_spacing = 0;      ///< h_c: width to which lines are smeared; larger: smoother [m]
+  double height = 0;  ///< G: bound of the displacement [m]; no more than a twentieth of the body's diagonal is used
   double longest_share = 1;  ///< m: share of the lines, the longest ones, that is raised, in [0, 1]
   double grain = 0;          ///< share of the height that is grain instead of lines, in [0, 1]
   double grain_size = 0;     ///< size of the coarsest grains [m]; not used when grain is 0
