@@ -28,7 +28,7 @@ struct Settings {
   double smallest_share = 0.002;  ///< sound islands with a smaller share of the nodes go to their neighbours
   int smallest_nodes = 8;         ///< and so do islands with fewer nodes
   double debris_size = 0;  ///< crushed lumps are subdivided into cells of about this size [m]; 0: they join the islands
-  double jitter = 1e-5;    ///< displacement of Voronoi sites against cospherical ones, in bounding box diagonals
+  double jitter = 1e-4;    ///< displacement of Voronoi sites against cospherical ones, in bounding box diagonals
   std::uint64_t seed = 1;
 };
 

@@ -166,16 +166,18 @@ class Chooser {
     }
   }
 
-  /// Crack nodes that a sound site would claim across empty space, of the same piece or not: where it is of another,
-  /// both sides of the crack need sites of their own.
+  /// Crack nodes that a site on an island would claim across empty space, of the same piece or not: where it is of
+  /// another, both sides of the crack need sites of their own.
   void add_crack_strays() {
-    std::vector<char> sound(taken_.size(), 0);
+    std::vector<char> islands(taken_.size(), 0);
     for (const Site& site : sites_)
-      if (site.lattice == lattice_.position(site.node)) sound[static_cast<Index>(site.lattice)] = is_sound(site.node);
-    const Nearest nearest = nearest_marked(lattice_, sound);
+      if (site.lattice == lattice_.position(site.node))
+        islands[static_cast<Index>(site.lattice)] = pieces_.is_island[static_cast<Index>(site.node)];
+    const Nearest nearest = nearest_marked(lattice_, islands);
     for (int node = 0; node < lattice_.count(); ++node) {
-      if (is_sound(node) || is_taken(node)) continue;
-      const double straight = std::sqrt(nearest.squared[static_cast<Index>(lattice_.position(node))]);
+      const Index position = static_cast<Index>(lattice_.position(node));
+      if (is_sound(node) || taken_[position] || nearest.source[position] < 0) continue;
+      const double straight = std::sqrt(nearest.squared[position]);
       if (std::sqrt(pieces_.reach[static_cast<Index>(node)]) <= straight + slack) continue;
       add_node(node, lattice_.point(node), false);
     }
