@@ -79,6 +79,8 @@ class FirstHit {
   bool unclear_ = false;
 };
 
+}  // namespace
+
 int region_at(const Vec3& point, const CrackComplex& cracks) {
   constexpr std::size_t kShots = 64;
   const std::size_t count = cracks.triangles.size();
@@ -93,8 +95,6 @@ int region_at(const Vec3& point, const CrackComplex& cracks) {
   }
   reject("the region of a part of the body is unclear");
 }
-
-}  // namespace
 
 std::vector<char> crack_cells_inside(const Arrangement& arrangement, const TriangleMesh& body) {
   const Divided& cracks = arrangement.cracks;

@@ -14,6 +14,10 @@ struct Labels {
   DisjointSets body_sets;       // cells of the body that hang together
 };
 
+/// The region of a point: by the first crack triangle that a segment from it meets; 0 if there is none at all.
+/// Errors: ErrorKind::mesh when the point lies on a crack.
+int region_at(const Vec3& point, const CrackComplex& cracks);
+
 /// Per cell of the cracks. Errors: ErrorKind::mesh when segments contradict each other.
 std::vector<char> crack_cells_inside(const Arrangement& arrangement, const TriangleMesh& body);
 

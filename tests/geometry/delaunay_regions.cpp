@@ -6,6 +6,7 @@
 
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Random.h>
 #include <CGAL/Triangulation_vertex_base_with_info_3.h>
 
 #include "core/random.h"
@@ -31,6 +32,8 @@ std::vector<Vec3> helpers(const Box& box) {
 }
 
 Delaunay triangulate(const Box& box, const std::vector<Vec3>& seeds) {
+  // CGAL inserts points in a random order that depends on what the thread did before.
+  CGAL::get_default_random() = CGAL::Random(0);
   std::vector<std::pair<Kernel::Point_3, int>> points;
   for (std::size_t i = 0; i < seeds.size(); ++i) {
     points.push_back({{seeds[i].x(), seeds[i].y(), seeds[i].z()}, static_cast<int>(i)});
