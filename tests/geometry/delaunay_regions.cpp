@@ -1,12 +1,12 @@
 #include "tests/geometry/delaunay_regions.h"
 
 #include <algorithm>
-#include <limits>
-#include <unordered_map>
+#include <array>
+#include <map>
+#include <utility>
 
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Random.h>
 #include <CGAL/Triangulation_vertex_base_with_info_3.h>
 
 #include "core/random.h"
@@ -32,50 +32,82 @@ std::vector<Vec3> helpers(const Box& box) {
 }
 
 Delaunay triangulate(const Box& box, const std::vector<Vec3>& seeds) {
-  // CGAL inserts points in a random order that depends on what the thread did before.
-  CGAL::get_default_random() = CGAL::Random(0);
   std::vector<std::pair<Kernel::Point_3, int>> points;
   for (std::size_t i = 0; i < seeds.size(); ++i) {
     points.push_back({{seeds[i].x(), seeds[i].y(), seeds[i].z()}, static_cast<int>(i)});
   }
-  for (const Vec3& x : helpers(box)) points.push_back({{x.x(), x.y(), x.z()}, -1});
+  int helper = 0;
+  for (const Vec3& x : helpers(box)) points.push_back({{x.x(), x.y(), x.z()}, --helper});
   return Delaunay(points.begin(), points.end());
+}
+
+// CGAL hands cells out in an order that depends on addresses and on its random numbers. A cell is known by its corners.
+using CellKey = std::array<int, 4>;
+using VertexOfCell = std::map<CellKey, std::pair<Vec3, int>>;
+
+CellKey key_of(Delaunay::Cell_handle cell) {
+  CellKey key;
+  for (int k = 0; k < 4; ++k) key[k] = cell->vertex(k)->info();
+  std::sort(key.begin(), key.end());
+  return key;
+}
+
+Vec3 dual_of(Delaunay::Cell_handle cell) {
+  std::array<std::pair<int, Kernel::Point_3>, 4> corners;
+  for (int k = 0; k < 4; ++k) corners[k] = {cell->vertex(k)->info(), cell->vertex(k)->point()};
+  std::sort(corners.begin(), corners.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  const auto x = CGAL::circumcenter(corners[0].second, corners[1].second, corners[2].second, corners[3].second);
+  return {x.x(), x.y(), x.z()};
+}
+
+// The cells around an edge, in turn; empty if one is infinite.
+std::vector<CellKey> cells_around(const Delaunay& delaunay, const Delaunay::Edge& edge, VertexOfCell& vertices) {
+  std::vector<CellKey> result;
+  auto cell = delaunay.incident_cells(edge);
+  const auto start = cell;
+  do {
+    if (delaunay.is_infinite(cell)) return {};
+    result.push_back(key_of(cell));
+    if (!vertices.contains(result.back())) vertices[result.back()] = {dual_of(cell), -1};
+  } while (++cell != start);
+  return result;
+}
+
+Vec3 normal_of(const std::vector<Vec3>& vertices, const std::vector<int>& loop) {
+  Vec3 normal = Vec3::Zero();
+  for (std::size_t i = 1; i + 1 < loop.size(); ++i) {
+    normal += (vertices[loop[i]] - vertices[loop[0]]).cross(vertices[loop[i + 1]] - vertices[loop[0]]);
+  }
+  return normal;
 }
 
 }  // namespace
 
 RegionBoundary delaunay_regions(const Box& box, const std::vector<Vec3>& seeds, const std::vector<int>& region_of) {
   const Delaunay delaunay = triangulate(box, seeds);
+  VertexOfCell vertices;
+  std::map<std::pair<int, int>, std::vector<CellKey>> loops;  // by seeds
+  for (auto edge = delaunay.finite_edges_begin(); edge != delaunay.finite_edges_end(); ++edge) {
+    const int i = edge->first->vertex(edge->second)->info(), j = edge->first->vertex(edge->third)->info();
+    if (i < 0 || j < 0 || region_of[i] == region_of[j]) continue;
+    std::vector<CellKey> loop = cells_around(delaunay, *edge, vertices);
+    if (!loop.empty()) loops[std::minmax(i, j)] = std::move(loop);
+  }
   RegionBoundary result;
   result.region_count = 1 + *std::max_element(region_of.begin(), region_of.end());
-  std::unordered_map<Delaunay::Cell_handle, int> vertex_of;
-  const auto vertex = [&](Delaunay::Cell_handle cell) {
-    const auto [found, added] = vertex_of.emplace(cell, static_cast<int>(result.vertices.size()));
-    if (added) {
-      const auto x = delaunay.dual(cell);
-      result.vertices.push_back({x.x(), x.y(), x.z()});
-    }
-    return found->second;
-  };
-  for (auto edge = delaunay.finite_edges_begin(); edge != delaunay.finite_edges_end(); ++edge) {
-    const int a = edge->first->vertex(edge->second)->info(), b = edge->first->vertex(edge->third)->info();
-    if (a < 0 || b < 0 || region_of[a] == region_of[b]) continue;
+  for (auto& [key, vertex] : vertices) {
+    vertex.second = static_cast<int>(result.vertices.size());
+    result.vertices.push_back(vertex.first);
+  }
+  for (const auto& [sides, cells] : loops) {
+    const auto [a, b] = sides;
     RegionBoundary::Face face{{}, region_of[a], region_of[b]};
-    bool finite = true;
-    auto cell = delaunay.incident_cells(*edge);
-    const auto start = cell;
-    do {
-      finite &= !delaunay.is_infinite(cell);
-      if (finite) face.loop.push_back(vertex(cell));
-    } while (finite && ++cell != start);
-    if (!finite) continue;
+    for (const CellKey& cell : cells) face.loop.push_back(vertices[cell].second);
     // Turned so that the normal points from a to b.
-    Vec3 normal = Vec3::Zero();
-    const Vec3& apex = result.vertices[face.loop[0]];
-    for (std::size_t i = 1; i + 1 < face.loop.size(); ++i) {
-      normal += (result.vertices[face.loop[i]] - apex).cross(result.vertices[face.loop[i + 1]] - apex);
+    if (normal_of(result.vertices, face.loop).dot(seeds[b] - seeds[a]) < 0) {
+      std::reverse(face.loop.begin(), face.loop.end());
     }
-    if (normal.dot(seeds[b] - seeds[a]) < 0) std::reverse(face.loop.begin(), face.loop.end());
+    std::rotate(face.loop.begin(), std::min_element(face.loop.begin(), face.loop.end()), face.loop.end());
     result.faces.push_back(face);
   }
   return result;
