@@ -127,8 +127,9 @@ std::vector<CrackFace> crack_faces(const Raster& raster, const std::vector<Site>
   const auto add = [&](const CellFace& face, FaceKind kind) {
     Vec3 middle = Vec3::Zero();
     for (const int v : face.loop) middle += cells.vertices[v] / static_cast<double>(face.loop.size());
-    faces.push_back(
-        {face.loop, kind, sites[face.site].piece, sites[face.neighbour].piece, damage_time_at(raster, middle)});
+    const bool in_body = raster.lattice.node_at(raster.lattice.nearest(middle)) >= 0;
+    faces.push_back({face.loop, kind, sites[face.site].piece, sites[face.neighbour].piece,
+                     damage_time_at(raster, middle), in_body});
   };
   const auto has_damage = [&](const CellFace& face) {
     return damage_between(raster, sites[face.site].position, sites[face.neighbour].position, crack_damage);

@@ -44,6 +44,7 @@ struct CrackFace {
   FaceKind kind = FaceKind::interior;
   int region_a = 0, region_b = 0;  ///< on its two sides; the same for a partial crack
   double damage_time = -1;         ///< mean of the damage beside it [s]; -1: unknown
+  bool in_body = true;             ///< its middle lies in the body: Voronoi faces go on in the empty space around it
 };
 
 /// A site that stays where it is, on its side of the crack, in later extractions.

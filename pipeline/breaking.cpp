@@ -64,6 +64,8 @@ FractureInput Simulation::fracture_input(const Hit& hit, std::vector<rigid::Body
   input.solve.two_fields = scene_.fracture.velocity_fields == 2;
   input.solve.spline = scene_.fracture.spline;
   input.solve.scatter_length = scene_.fracture.scatter_length;
+  input.crack = {scene_.fracture.node_spacing,  scene_.fracture.debris_size,   scene_.effects.hairlines,
+                 scene_.effects.surface_detail, scene_.fracture.level_set_cut, scene_.fracture.voxel_size};
   input.seed = input.solve.seed =
       random_word(scene_.seed, static_cast<std::uint64_t>(piece.id), report_.fractures.size());
   const double share = piece.volume / original_volume_[static_cast<std::size_t>(live.origin_index)];
@@ -72,32 +74,6 @@ FractureInput Simulation::fracture_input(const Hit& hit, std::vector<rigid::Body
       static_cast<int>(settings_of(scene_.quality).particles * std::clamp(share, fragment_particle_share, 1.0));
   return input;
 }
-
-namespace {
-
-FractureRecord record_of(const FractureInput& input, const FractureOutcome& outcome) {
-  FractureRecord record;
-  for (const mpm::LoadResult& load : outcome.solve.loads) record.delivered_impulse += load.impulse;
-  for (const mpm::Load& load : input.loads)
-    record.approach_speed = std::max(record.approach_speed, load.approach_speed);
-  record.particles = outcome.particles;
-  record.steps = outcome.solve.steps;
-  record.nuclei = outcome.solve.nuclei;
-  record.seconds = outcome.seconds;
-  record.damaged_share = outcome.damaged_share;
-  record.lump_share = outcome.lump_share;
-  record.volume_error = outcome.volume_error;
-  record.work_over_impact_energy = outcome.solve.work / outcome.solve.impact_energy;
-  record.energy = outcome.solve.energy;
-  record.stopped_by = mpm::name_of(outcome.solve.stop);
-  record.band_width = outcome.solve.band_width;
-  record.admissible_length = outcome.solve.admissible_length;
-  record.tensile_strength = input.material.tensile_strength;
-  record.propagation_strength = outcome.solve.propagation_strength;
-  return record;
-}
-
-}  // namespace
 
 void Simulation::solve(const Hit& hit, Progress& progress) {
   Live& live = live_.at(hit.body);
@@ -128,6 +104,7 @@ void Simulation::account(const FractureRecord& record, const FractureOutcome& ou
   report_.seconds.extract += record.seconds.extract;
   report_.seconds.cut += record.seconds.cut;
   for (const auto& [name, count] : outcome.fallbacks) report_.fallbacks[name] += count;
+  for (const std::string& trouble : outcome.cracked.troubles) report_.notes.push_back(record.body + ": " + trouble);
 }
 
 std::vector<Piece> Simulation::pieces_of(const Live& parent, const FractureOutcome& outcome,

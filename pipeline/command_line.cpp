@@ -14,6 +14,7 @@
 #include "pipeline/progress_display.h"
 #include "pipeline/quality.h"
 #include "pipeline/run.h"
+#include "pipeline/still.h"
 #include "pipeline/validate.h"
 #include "sunder_version.h"
 
@@ -112,6 +113,103 @@ int validate_command(const ValidateOptions& options) {
   return validate(options, *progress) ? 0 : 1;
 }
 
+using Triple = std::vector<double>;
+
+std::optional<Vec3> vector_of(const Triple& triple) {
+  if (triple.empty()) return {};
+  return Vec3(triple[0], triple[1], triple[2]);
+}
+
+struct StillArguments {
+  FractureOptions fracture;
+  ExtractOptions extract;
+  Triple at, direction;
+  std::string out;
+};
+
+int say_still(const StillResult& result, const std::filesystem::path& out) {
+  if (result.report.extract) {
+    const ExtractRecord& e = *result.report.extract;
+    std::cout << e.points << " points, " << e.sites << " sites: " << e.pieces << " pieces, "
+              << e.interior + e.extension + e.partial << " crack faces (" << e.interior << " interior, " << e.extension
+              << " extension, " << e.partial << " partial)\n";
+  }
+  for (const FractureRecord& f : result.report.fractures) std::cout << sentence(f) << "\n";
+  std::cout << summary(result.report, result.sequence) << "written to " << out.string() << std::endl;
+  return 0;
+}
+
+int fracture_command(StillArguments& arguments, LogFormat log) {
+  FractureOptions& options = arguments.fracture;
+  options.at = vector_of(arguments.at);
+  options.direction = vector_of(arguments.direction);
+  if (options.cells == 0 && !(options.at && options.impulse > 0))
+    throw Error(ErrorKind::usage,
+                "fracture needs --at x,y,z and --impulse N*s, or --cells N for a shatter without physics");
+  if (options.direction && !(options.direction->norm() > 0)) throw Error(ErrorKind::usage, "--direction has no length");
+  options.out =
+      arguments.out.empty() ? std::filesystem::path("out") / options.mesh.stem() : std::filesystem::path(arguments.out);
+  const auto progress = make_progress_display(log);
+  return say_still(fracture_mesh(options, *progress), options.out);
+}
+
+int extract_command(StillArguments& arguments, LogFormat log) {
+  ExtractOptions& options = arguments.extract;
+  options.out = arguments.out.empty() ? std::filesystem::path("out") / options.points.stem()
+                                      : std::filesystem::path(arguments.out);
+  const auto progress = make_progress_display(log);
+  return say_still(extract_points(options, *progress), options.out);
+}
+
+/// Options that `fracture` and `extract` share.
+void add_still_options(CLI::App& app, StillOptions& options, std::string& out) {
+  static const std::map<std::string, geometry::UpAxis> axes = {
+      {"x", geometry::UpAxis::x}, {"y", geometry::UpAxis::y}, {"z", geometry::UpAxis::z}};
+  std::vector<std::string> looks = crack::detail_preset_names();
+  app.add_option("--out", out, "Folder for the results (default: out/<name>)");
+  app.add_option("--unit", options.load.metres_per_unit, "Metres per unit of the files")->check(CLI::PositiveNumber);
+  app.add_option("--up", options.load.up, "Up axis of the mesh: x, y or z")->transform(CLI::CheckedTransformer(axes));
+  app.add_option("--height", options.height, "Scale the mesh to this height [m]")->check(CLI::PositiveNumber);
+  app.add_option("--seed", options.seed, "Of everything random");
+  app.add_option("--detail", options.crack.detail, "Look of the crack faces")->check(CLI::IsMember(looks));
+  app.add_option("--hairlines", options.crack.hairline_width, "Width of gaps that show partial cracks [m]")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--debris", options.crack.debris_size, "Crushed lumps fall into pieces of this size [m]")
+      ->check(CLI::PositiveNumber);
+  app.add_flag("--level-set", options.crack.level_set, "Cut on a voxel grid instead of exactly");
+  app.add_option("--voxel", options.crack.voxel_size, "Voxel size of that grid [m]")->check(CLI::PositiveNumber);
+}
+
+void add_fracture(CLI::App& app, StillArguments& arguments) {
+  FractureOptions& options = arguments.fracture;
+  app.add_option("mesh", options.mesh, "Mesh file, or a name of assets/meshes.toml")->required();
+  app.add_option("--at", arguments.at, "Where it is hit: x,y,z [m], the nearest point of the surface")
+      ->delimiter(',')
+      ->expected(3);
+  app.add_option("--impulse", options.impulse, "Momentum of the impactor, a steel ball [N s]")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--speed", options.speed, "Speed of the impactor [m/s]")->check(CLI::PositiveNumber);
+  app.add_option("--direction", arguments.direction, "x,y,z in which it flies (default: against the surface)")
+      ->delimiter(',')
+      ->expected(3);
+  app.add_option("--material", options.material, "Material of assets/materials.toml");
+  app.add_option("--quality", options.quality, "draft, preview or final")
+      ->transform(CLI::CheckedTransformer(quality_words));
+  app.add_option("--cells", options.cells, "No impact: shatter into so many Voronoi cells")
+      ->check(CLI::Range(2, 100000));
+  add_still_options(app, options, arguments.out);
+}
+
+void add_extract(CLI::App& app, StillArguments& arguments) {
+  ExtractOptions& options = arguments.extract;
+  app.add_option("points", options.points, "Text, PLY or VDB with x y z damage [damage_time]")->required();
+  app.add_option("--mesh", options.mesh, "Body to cut: mesh file, or a name of assets/meshes.toml");
+  app.add_option("--spacing", options.crack.node_spacing, "Of the nodes on which damage is measured [m]")
+      ->check(CLI::PositiveNumber)
+      ->required();
+  add_still_options(app, options, arguments.out);
+}
+
 int dispatch(int argc, char** argv, LogFormat& log) {
   CLI::App app("Sunder breaks things the way they break: a scene file goes in, a shatter sequence comes out.");
   app.set_version_flag("--version", std::string(SUNDER_VERSION) + " (" + SUNDER_GIT + ")");
@@ -135,6 +233,13 @@ int dispatch(int argc, char** argv, LogFormat& log) {
   inspect_app->add_option("mesh", mesh_file, "Mesh file")->required();
   inspect_app->add_option("--unit", unit, "Metres per unit of the file")->check(CLI::PositiveNumber);
 
+  StillArguments still;
+  auto* fracture_app =
+      app.add_subcommand("fracture", "Break one mesh where it stands: one hit, or a plain Voronoi shatter");
+  add_fracture(*fracture_app, still);
+  auto* extract_app = app.add_subcommand("extract", "Crack surfaces and fragments from any cloud of damaged points");
+  add_extract(*extract_app, still);
+
   ValidateOptions validate_options;
   auto* validate_app = app.add_subcommand(
       "validate", "Run the catalogue of validation problems; exit code 0 when every check holds, 1 when one fails");
@@ -148,6 +253,8 @@ int dispatch(int argc, char** argv, LogFormat& log) {
   }
   if (*run_app) return run_command(run_arguments, log);
   if (*check_app) return check_command(check_file);
+  if (*fracture_app) return fracture_command(still, log);
+  if (*extract_app) return extract_command(still, log);
   if (*validate_app) return validate_command(validate_options);
   return inspect_command(mesh_file, unit);
 }

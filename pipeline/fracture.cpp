@@ -4,8 +4,6 @@
 
 #include <Eigen/Cholesky>
 
-#include "core/random.h"
-#include "crack/extract.h"
 #include "geometry/mass_properties.h"
 #include "geometry/sample.h"
 #include "pipeline/handover.h"
@@ -14,7 +12,6 @@
 namespace sunder::pipeline {
 namespace {
 
-constexpr int cut_attempts = 4;
 /// A piece of more than this share of the body keeps its particles.
 constexpr double nearly_whole = 0.98;
 
@@ -48,34 +45,6 @@ crack::DamageField damage_field(const geometry::Samples& samples, const mpm::Sol
     field.damage_time.push_back(p.damage_time);
   }
   return field;
-}
-
-struct Pieces {
-  crack::Extraction extraction;
-  geometry::CutResult cut;
-};
-
-/// Other Voronoi sites give another cut of the same damage, so a failed cut is worth another try.
-Pieces extract_and_cut(const FractureInput& input, const crack::DamageField& field, FractureOutcome& outcome,
-                       Progress& progress) {
-  Pieces pieces;
-  for (int attempt = 0; attempt < cut_attempts; ++attempt) {
-    crack::Settings settings;
-    settings.seed = random_word(input.seed, 0xc7ac4, static_cast<std::uint64_t>(attempt));
-    {
-      const Stopwatch watch(outcome.seconds.extract);
-      pieces.extraction = crack::extract(field, geometry::bounds(input.mesh), settings, progress);
-    }
-    if (pieces.extraction.retries > 0) outcome.fallbacks["voronoi_sites_jittered_anew"] += pieces.extraction.retries;
-    if (pieces.extraction.region_count < 2) return pieces;
-    const Stopwatch watch(outcome.seconds.cut);
-    pieces.cut = geometry::cut(input.mesh, pieces.extraction.boundary, {}, progress);
-    if (pieces.cut.nudges > 0) outcome.fallbacks["cut_regions_nudged"] += pieces.cut.nudges;
-    if (pieces.cut.status == geometry::CutStatus::ok) return pieces;
-    outcome.fallbacks["cut_retried"] += 1;
-  }
-  outcome.fallbacks["fracture_abandoned"] += 1;
-  return pieces;
 }
 
 /// Mean motion of the particles of each region: their momentum over their mass properties.
@@ -152,19 +121,21 @@ FractureOutcome fracture(const FractureInput& input, Progress& progress) {
   outcome.own = std::make_shared<Particles>(Particles{samples, outcome.solve.cracks});
   if (outcome.solve.failures == 0) return outcome;
 
-  const Pieces pieces = extract_and_cut(input, damage_field(samples, outcome.solve), outcome, progress);
-  outcome.lump_share = pieces.extraction.lump_share;
-  outcome.volume_error = pieces.cut.volume_error;
-  if (pieces.cut.fragments.size() < 2) return outcome;
+  outcome.cracked = crack_and_cut(input.mesh, damage_field(samples, outcome.solve), input.crack, input.seed, progress);
+  const Cracked& cracked = outcome.cracked;
+  outcome.seconds.extract = cracked.extract_seconds;
+  outcome.seconds.cut = cracked.cut_seconds;
+  for (const auto& [name, count] : cracked.fallbacks) outcome.fallbacks[name] += count;
+  if (cracked.cut.fragments.size() < 2) return outcome;
   std::vector<Vec3> centre;
-  const auto motion =
-      region_motion(samples, outcome.solve, pieces.extraction.region, pieces.extraction.region_count, centre);
-  for (const geometry::Fragment& fragment : pieces.cut.fragments) {
+  const std::vector<int>& region = cracked.extraction.region;
+  const auto motion = region_motion(samples, outcome.solve, region, cracked.extraction.region_count, centre);
+  for (const geometry::Fragment& fragment : cracked.cut.fragments) {
     const std::size_t k = static_cast<std::size_t>(fragment.region);
     const geometry::MassProperties whole = geometry::mass_properties(fragment.mesh);
     BrokenPiece piece{fragment, {motion[k].at(whole.centroid - centre[k]), motion[k].angular}, nullptr};
     if (whole.volume > nearly_whole * volume)
-      piece.own = std::make_shared<Particles>(particles_of(*outcome.own, pieces.extraction.region, fragment.region));
+      piece.own = std::make_shared<Particles>(particles_of(*outcome.own, region, fragment.region));
     outcome.pieces.push_back(std::move(piece));
   }
   return outcome;

@@ -1,8 +1,6 @@
 #pragma once
 /// One body breaks: sample, solve, extract, cut. Values in, values out; nothing here knows of worlds or scenes.
-#include <map>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "core/progress.h"
@@ -10,12 +8,10 @@
 #include "geometry/mesh.h"
 #include "geometry/sample.h"
 #include "mpm/solve.h"
+#include "pipeline/cracking.h"
 #include "pipeline/material.h"
 
 namespace sunder::pipeline {
-
-/// Fallbacks that were taken, by name, with how often.
-using Fallbacks = std::map<std::string, int>;
 
 /// Wall-clock seconds by stage.
 struct StageSeconds {
@@ -35,6 +31,7 @@ struct FractureInput {
   std::vector<mpm::Load> loads;  ///< in the body's frame; their points need to lie near the surface only
   std::vector<mpm::Partner> partners;
   mpm::SolveSettings solve;
+  CrackChoice crack;
   int particles = 20000;                           ///< to fill the body with, unless it has its own
   std::shared_ptr<const Particles> own = nullptr;  ///< of an earlier solve
   std::uint64_t seed = 1;
@@ -51,14 +48,15 @@ struct FractureOutcome {
   std::vector<BrokenPiece> pieces;                 ///< fewer than two: the body stays whole
   std::shared_ptr<const Particles> own = nullptr;  ///< of the body, should it stay whole
   mpm::SolveResult solve;
-  double damaged_share = 0, lump_share = 0, volume_error = 0;
+  Cracked cracked;  ///< its fragments are those of `pieces`, or the body with hairlines if that is all there is
+  double damaged_share = 0;
   long particles = 0;
   StageSeconds seconds;
   Fallbacks fallbacks;
 };
 
-/// Errors: those of mpm::solve and of the interruption. A cut that fails is retried with other Voronoi sites; when it
-/// keeps failing the body stays whole and the fallback "fracture_abandoned" is counted.
+/// Errors: those of mpm::solve and of the interruption. When nothing can cut the body it stays whole and the fallback
+/// "fracture_abandoned" is counted.
 FractureOutcome fracture(const FractureInput& input, Progress& progress);
 
 }  // namespace sunder::pipeline

@@ -11,18 +11,22 @@
 namespace sunder::pipeline {
 namespace {
 
+// 9 significant digits: what a reader with single precision needs to get every bit of it.
+enum class Digits { nine, all };
+
 // Text that grows at its end; numbers go straight into it.
 class TextBuffer {
  public:
-  explicit TextBuffer(std::size_t capacity) { text_.reserve(capacity); }
+  explicit TextBuffer(std::size_t capacity, Digits digits = Digits::nine) : digits_(digits) { text_.reserve(capacity); }
 
   TextBuffer& operator<<(std::string_view text) {
     text_.append(text);
     return *this;
   }
   TextBuffer& operator<<(long value) { return append(value); }
-  // 9 significant digits: what a reader with single precision needs to get every bit of it.
-  TextBuffer& operator<<(double value) { return append(value, std::chars_format::general, 9); }
+  TextBuffer& operator<<(double value) {
+    return digits_ == Digits::all ? append(value) : append(value, std::chars_format::general, 9);
+  }
 
   const std::string& text() const { return text_; }
 
@@ -35,6 +39,7 @@ class TextBuffer {
     return *this;
   }
 
+  Digits digits_;
   std::string text_;
 };
 
@@ -103,6 +108,15 @@ std::string frame_number(long number) {
 }
 
 }  // namespace
+
+void write_obj_piece(const Piece& piece, const std::filesystem::path& file) {
+  TextBuffer out(200 + 70 * piece.mesh.vertices.size() + 24 * piece.mesh.faces.size(), Digits::all);
+  out << "# metres, Y up\no " << piece.name << "\n";
+  for (const Vec3& x : piece.mesh.vertices) out << "v " << x.x() << " " << x.y() << " " << x.z() << "\n";
+  append_faces(out, piece, false, 1);
+  append_faces(out, piece, true, 1);
+  write_atomically(file, out.text());
+}
 
 void write_obj_frame(const Sequence& sequence, std::size_t frame, const std::filesystem::path& dir) {
   const std::string number = frame_number(static_cast<long>(sequence.start_frame) + static_cast<long>(frame));

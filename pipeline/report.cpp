@@ -38,7 +38,7 @@ Json fragments_json(const Report& report, const Sequence& sequence) {
                     {"area", p->area},
                     {"closed", p->closed}});
   }
-  double worst = 0;
+  double worst = report.cut_volume_error;
   for (const FractureRecord& f : report.fractures) worst = std::max(worst, f.volume_error);
   return {{"count", list.size()}, {"closed", closed}, {"volume_error", worst}, {"list", list}};
 }
@@ -62,6 +62,9 @@ Json fracture_json(const FractureRecord& f) {
           {"damaged_share", f.damaged_share},
           {"lump_share", f.lump_share},
           {"volume_error", f.volume_error},
+          {"debris", f.debris},
+          {"hairline_faces", f.hairline_faces},
+          {"surface_detail", {{"vertices", f.detail_vertices}, {"limited", f.detail_limited}}},
           {"work_over_impact_energy", f.work_over_impact_energy},
           {"energy",
            {{"work", f.energy.work},
@@ -78,6 +81,20 @@ Json fracture_json(const FractureRecord& f) {
           {"propagation_strength", f.propagation_strength}};
 }
 
+Json extract_json(const ExtractRecord& e) {
+  return {{"points", e.points},
+          {"point_spacing", e.point_spacing},
+          {"node_spacing", e.node_spacing},
+          {"sites", e.sites},
+          {"faces", e.interior + e.extension + e.partial},
+          {"faces_by_kind", {{"interior", e.interior}, {"extension", e.extension}, {"partial", e.partial}}},
+          {"pieces", e.pieces},
+          {"effective_pieces", e.effective_count},
+          {"damaged_share", e.damaged_share},
+          {"lump_share", e.lump_share},
+          {"debris", e.debris}};
+}
+
 Json energy_json(const Report& report) {
   Json list = Json::array();
   for (const FractureRecord& f : report.fractures)
@@ -88,6 +105,50 @@ Json energy_json(const Report& report) {
 
 }  // namespace
 
+FractureRecord record_of(const FractureInput& input, const FractureOutcome& outcome) {
+  FractureRecord record;
+  for (const mpm::LoadResult& load : outcome.solve.loads) record.delivered_impulse += load.impulse;
+  for (const mpm::Load& load : input.loads)
+    record.approach_speed = std::max(record.approach_speed, load.approach_speed);
+  record.particles = outcome.particles;
+  record.steps = outcome.solve.steps;
+  record.nuclei = outcome.solve.nuclei;
+  record.seconds = outcome.seconds;
+  record.damaged_share = outcome.damaged_share;
+  record.lump_share = outcome.cracked.extraction.lump_share;
+  record.volume_error = outcome.cracked.cut.volume_error;
+  record.debris = outcome.cracked.extraction.debris;
+  record.hairline_faces = outcome.cracked.hairline_faces;
+  record.detail_vertices = outcome.cracked.detail_vertices;
+  record.detail_limited = outcome.cracked.detail_limited;
+  record.work_over_impact_energy = outcome.solve.work / outcome.solve.impact_energy;
+  record.energy = outcome.solve.energy;
+  record.stopped_by = mpm::name_of(outcome.solve.stop);
+  record.band_width = outcome.solve.band_width;
+  record.admissible_length = outcome.solve.admissible_length;
+  record.tensile_strength = input.material.tensile_strength;
+  record.propagation_strength = outcome.solve.propagation_strength;
+  return record;
+}
+
+ExtractRecord record_of(const crack::Extraction& extraction) {
+  ExtractRecord record;
+  record.points = static_cast<long>(extraction.region.size());
+  record.sites = extraction.sites;
+  record.pieces = extraction.region_count;
+  record.effective_count = extraction.effective_count;
+  record.damaged_share = extraction.damaged_share;
+  record.lump_share = extraction.lump_share;
+  record.debris = extraction.debris;
+  for (const crack::CrackFace& face : extraction.faces) {
+    if (!face.in_body) continue;
+    record.interior += face.kind == crack::FaceKind::interior;
+    record.extension += face.kind == crack::FaceKind::extension;
+    record.partial += face.kind == crack::FaceKind::partial;
+  }
+  return record;
+}
+
 std::string to_json(const Report& report, const Sequence& sequence) {
   Json fractures = Json::array(), repairs = Json::array();
   double solve_seconds = 0;
@@ -97,7 +158,7 @@ std::string to_json(const Report& report, const Sequence& sequence) {
   }
   for (const RepairRecord& r : report.repairs) repairs.push_back({{"body", r.body}, {"steps", r.steps}});
   const auto& s = report.seconds;
-  const Json json = {
+  Json json = {
       {"version", SUNDER_VERSION},
       {"git", SUNDER_GIT},
       {"scene", report.scene},
@@ -127,6 +188,7 @@ std::string to_json(const Report& report, const Sequence& sequence) {
         {"cut", s.cut},
         {"export", s.write}}},
       {"peak_memory_mb", report.peak_memory_mb}};
+  if (report.extract) json["extract"] = extract_json(*report.extract);
   return json.dump(2) + "\n";
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 /// What happened in a run, for people and for farms: report.json.
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,13 +22,30 @@ struct FractureRecord {
   StageSeconds seconds;
   int fragments = 0;  ///< 0: stayed whole
   double damaged_share = 0, lump_share = 0, volume_error = 0;
+  int debris = 0;                                ///< pieces that subdivide crushed lumps
+  long hairline_faces = 0;                       ///< partial crack faces that are shown as gaps
+  long detail_vertices = 0, detail_limited = 0;  ///< of detailed crack faces, and those lower than asked
   double work_over_impact_energy = 0;
-  mpm::EnergyLedger energy;  ///< [J]
-  std::string stopped_by;    ///< what ended the solve
+  mpm::EnergyLedger energy;                               ///< [J]
+  std::string stopped_by;                                 ///< what ended the solve
   double kinetic_before = 0, kinetic_after = 0;           ///< of the body and its partners [J]
   double band_width = 0, admissible_length = 0;           ///< l_ch, l_max [m]
   double tensile_strength = 0, propagation_strength = 0;  ///< of the material, and used at crack fronts [Pa]
 };
+
+/// What the solve says of itself; where and when it was is left open.
+FractureRecord record_of(const FractureInput& input, const FractureOutcome& outcome);
+
+/// What crack extraction found, for commands that extract without a run.
+struct ExtractRecord {
+  long points = 0, sites = 0;
+  double point_spacing = 0, node_spacing = 0;     ///< [m]
+  long interior = 0, extension = 0, partial = 0;  ///< faces in the body, by kind
+  int pieces = 1;
+  double effective_count = 1, damaged_share = 0, lump_share = 0;
+  int debris = 0;
+};
+ExtractRecord record_of(const crack::Extraction& extraction);
 
 struct RepairRecord {
   std::string body;
@@ -41,8 +59,10 @@ struct Report {
   bool interrupted = false;
   std::vector<std::string> effects_ran, effects_skipped;
   std::vector<FractureRecord> fractures;
+  std::optional<ExtractRecord> extract;
   std::vector<RepairRecord> repairs;
   long particle_steps = 0;
+  double cut_volume_error = 0;  ///< of a cut that no fracture made
   struct Seconds {
     double total = 0, setup = 0, rigid = 0, sample = 0, solve = 0, extract = 0, cut = 0, write = 0;
   } seconds;

@@ -52,6 +52,12 @@ void list_effects(const Scene& scene, const Sequence& sequence, Report& report) 
   list("fracture", solved);
   list("refracture", again);
   list("strength_scatter", solved && scene.effects.strength_scatter);
+  const auto any = [&](auto&& took_part) {
+    return std::any_of(report.fractures.begin(), report.fractures.end(), took_part);
+  };
+  list("surface_detail", any([](const FractureRecord& f) { return f.detail_vertices > 0; }));
+  list("hairlines", any([](const FractureRecord& f) { return f.hairline_faces > 0; }));
+  list("debris", any([](const FractureRecord& f) { return f.debris > 0; }));
 }
 
 class Recorder {

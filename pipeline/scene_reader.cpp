@@ -2,6 +2,7 @@
 #include <cstdlib>
 #include <limits>
 
+#include "crack/surface_detail.h"
 #include "pipeline/detail/body_keys.h"
 #include "pipeline/detail/material_keys.h"
 #include "pipeline/detail/scene_keys.h"
@@ -62,7 +63,21 @@ void read_spline(const Value& value, FractureSettings& settings) {
   settings.spline = value.word<mpm::Spline>(kSplines);
 }
 
-constexpr std::array<Key<FractureSettings>, 9> kFractureKeys = {{
+void read_cut(const Value& value, FractureSettings& settings) {
+  constexpr std::array<std::pair<std::string_view, bool>, 2> kWays = {{{"exact", false}, {"level_set", true}}};
+  settings.level_set_cut = value.word<bool>(kWays);
+}
+
+void read_surface_detail(const Value& value, Effects& effects) {
+  const std::string none = "none";
+  std::vector<std::string> names = crack::detail_preset_names();
+  names.insert(names.begin(), none);
+  std::vector<std::pair<std::string_view, std::string>> looks;
+  for (const std::string& name : names) looks.emplace_back(name, name == none ? "" : name);
+  effects.surface_detail = value.word<std::string>(looks);
+}
+
+constexpr std::array<Key<FractureSettings>, 13> kFractureKeys = {{
     {"minimum_impulse",
      [](const Value& value, FractureSettings& settings) { settings.minimum_impulse = value.non_negative(); }},
     {"minimum_volume",
@@ -82,12 +97,19 @@ constexpr std::array<Key<FractureSettings>, 9> kFractureKeys = {{
     {"spline", read_spline},
     {"scatter_length",
      [](const Value& value, FractureSettings& settings) { settings.scatter_length = value.positive(); }},
+    {"node_spacing", [](const Value& value, FractureSettings& settings) { settings.node_spacing = value.positive(); }},
+    {"debris_size",
+     [](const Value& value, FractureSettings& settings) { settings.debris_size = value.non_negative(); }},
+    {"cut", read_cut},
+    {"voxel_size", [](const Value& value, FractureSettings& settings) { settings.voxel_size = value.positive(); }},
 }};
 
-constexpr std::array<Key<Effects>, 3> kEffectsKeys = {{
+constexpr std::array<Key<Effects>, 5> kEffectsKeys = {{
     {"fracture", [](const Value& value, Effects& effects) { effects.fracture = value.flag(); }},
     {"refracture", [](const Value& value, Effects& effects) { effects.refracture = value.flag(); }},
     {"strength_scatter", [](const Value& value, Effects& effects) { effects.strength_scatter = value.flag(); }},
+    {"surface_detail", read_surface_detail},
+    {"hairlines", [](const Value& value, Effects& effects) { effects.hairlines = value.non_negative(); }},
 }};
 
 constexpr std::array<Key<Outputs>, 2> kOutputKeys = {{

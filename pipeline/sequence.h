@@ -50,6 +50,10 @@ struct Sequence {
 /// renamed. Also writes the material file dir/<name>.mtl with the first frame. Errors: ErrorKind::io.
 void write_obj_frame(const Sequence& sequence, std::size_t frame, const std::filesystem::path& dir);
 
+/// One piece where it was made, as Wavefront OBJ with every digit of its positions: what closed in memory stays closed
+/// in the file. Materials as above. Written atomically. Errors: ErrorKind::io.
+void write_obj_piece(const Piece& piece, const std::filesystem::path& file);
+
 /// All of the sequence as binary glTF 2.0: each piece once (flat normals are left to the viewer; two primitives:
 /// outside, inside), node translation and rotation sampled at the frames, scale 0 before birth and after death by STEP,
 /// `extras` with id, parent, generation, birth time, volume, mass. t = 0 is the first frame. Written atomically.

@@ -1,0 +1,339 @@
+#include "pipeline/still.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "core/random.h"
+#include "crack/shatter.h"
+#include "geometry/inspect.h"
+#include "geometry/load_points.h"
+#include "geometry/mass_properties.h"
+#include "geometry/sample.h"
+#include "pipeline/crack_writer.h"
+#include "pipeline/detail/mesh_catalogue.h"
+#include "pipeline/detail/piece_mesh.h"
+#include "pipeline/fracture.h"
+#include "pipeline/quality.h"
+#include "pipeline/stopwatch.h"
+
+namespace sunder::pipeline {
+namespace {
+
+constexpr int candidates_per_cell = 16;  // points of a lattice in the body, among which the sites are drawn
+constexpr double points_per_box = 8;     // of the boxes that measure how densely points lie
+constexpr const char* impactor = "steel";
+
+SceneBody body_of(const StillOptions& options) {
+  const AssetPaths assets = default_assets();
+  SceneBody body;
+  body.name = options.mesh.stem().string();
+  body.anchor = Anchor::origin;
+  body.mesh = {options.mesh.string(), options.mesh, options.load, Vec3::Zero(), options.height, 0, true};
+  const detail::MeshCatalogue catalogue = detail::load_catalogue(assets.meshes);
+  if (const auto known = catalogue.find(options.mesh.string()); known != catalogue.end()) {
+    body.mesh.file = assets.mesh_cache / known->second.file;
+    body.mesh.load.up = known->second.up;
+  }
+  return body;
+}
+
+Material find_material(const std::string& name) {
+  const MaterialLibrary library = load_materials(default_assets().materials);
+  const auto found = library.find(name);
+  if (found != library.end()) return found->second;
+  std::string known;
+  for (const auto& [other, material] : library) known.append(known.empty() ? "" : ", ").append(other);
+  throw Error(ErrorKind::usage, "there is no material '" + name + "'; known: " + known);
+}
+
+/// The body, and its fragments when there are any.
+Sequence still_sequence(const SceneBody& body, const geometry::TriangleMesh& mesh,
+                        const std::vector<geometry::Fragment>& fragments, double density) {
+  Sequence sequence;
+  sequence.name = body.name;
+  sequence.frames.resize(1);
+  const auto add = [&](Piece piece) {
+    geometry::TriangleMesh centred = piece.mesh;
+    detail::centred(centred, density, piece);
+    piece.id = static_cast<int>(sequence.pieces.size());
+    piece.body = body.name;
+    piece.material = body.material.name;
+    if (piece.parent >= 0 || fragments.empty()) sequence.frames[0].poses.push_back({piece.id, Pose()});
+    sequence.pieces.push_back(std::move(piece));
+  };
+  Piece whole;
+  whole.name = body.name;
+  whole.mesh = mesh;
+  whole.inside.assign(mesh.faces.size(), false);
+  if (!fragments.empty()) whole.death_time = 0;
+  add(std::move(whole));
+  for (const geometry::Fragment& fragment : fragments) {
+    char number[16];
+    std::snprintf(number, sizeof number, "_%04zu", sequence.pieces.size() - 1);
+    Piece piece;
+    piece.name = body.name + number;
+    piece.parent = 0;
+    piece.generation = 1;
+    piece.mesh = fragment.mesh;
+    for (const int source : fragment.source_face) piece.inside.push_back(source < 0);
+    add(std::move(piece));
+  }
+  return sequence;
+}
+
+void create_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw Error(ErrorKind::io, "cannot create the folder " + folder.string() + ": " + error.message());
+}
+
+/// Pieces of an earlier call would be taken for those of this one.
+void remove_stale_pieces(const std::filesystem::path& folder) {
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (entry.path().extension() == ".obj") std::filesystem::remove(entry.path());
+}
+
+void write_pieces(const Sequence& sequence, const std::filesystem::path& out, double& seconds) {
+  const Stopwatch watch(seconds);
+  const std::filesystem::path folder = out / "fragments";
+  create_folder(folder);
+  remove_stale_pieces(folder);
+  for (const PiecePose& pose : sequence.frames[0].poses) {
+    const Piece& piece = sequence.pieces[static_cast<std::size_t>(pose.piece)];
+    write_obj_piece(piece, folder / (piece.name + ".obj"));
+  }
+  write_glb(sequence, out / "fragments.glb");
+}
+
+Report report_of(const StillOptions& options, const std::string& name) {
+  Report report;
+  report.scene = name;
+  report.seed = options.seed;
+  return report;
+}
+
+void finish(StillResult& result, const std::filesystem::path& out, double total) {
+  result.report.seconds.total = total;
+  write_atomically(out / "report.json", to_json(result.report, result.sequence));
+}
+
+/// Random points in the solid, by drawing from a fine lattice.
+std::vector<Vec3> random_points(const geometry::TriangleMesh& mesh, int count, std::uint64_t seed, Progress& progress) {
+  const geometry::Samples samples =
+      geometry::sample_solid(mesh, {.count = count * candidates_per_cell, .jitter = 0.5, .seed = seed}, progress);
+  std::vector<std::pair<std::uint64_t, Vec3>> drawn;
+  for (const Vec3& x : samples.points) drawn.emplace_back(random_word(seed, 0xce115, drawn.size()), x);
+  std::sort(drawn.begin(), drawn.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  drawn.resize(std::min(drawn.size(), static_cast<std::size_t>(count)));
+  std::vector<Vec3> points;
+  for (const auto& [key, x] : drawn) points.push_back(x);
+  return points;
+}
+
+/// The point of the surface nearest to `x`, and the normal there.
+struct SurfacePoint {
+  Vec3 point = Vec3::Zero(), normal = Vec3::UnitY();
+  double distance = std::numeric_limits<double>::infinity();
+};
+
+/// Barycentric coordinates of the point of a triangle nearest to `x` (Ericson 2005, section 5.1.5).
+Vec3 nearest_in(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& x) {
+  const auto on_edge = [&](const Vec3& p, const Vec3& q) -> Vec3 {
+    return p + std::clamp((x - p).dot(q - p) / (q - p).squaredNorm(), 0.0, 1.0) * (q - p);
+  };
+  const Vec3 n = (b - a).cross(c - a);
+  const Vec3 foot = x - n * (n.dot(x - a) / n.squaredNorm());
+  const bool inside =
+      n.dot((b - a).cross(foot - a)) >= 0 && n.dot((c - b).cross(foot - b)) >= 0 && n.dot((a - c).cross(foot - c)) >= 0;
+  if (inside) return foot;
+  Vec3 best = on_edge(a, b);
+  for (const Vec3& other : {on_edge(b, c), on_edge(c, a)})
+    if ((other - x).squaredNorm() < (best - x).squaredNorm()) best = other;
+  return best;
+}
+
+SurfacePoint surface_near(const geometry::TriangleMesh& mesh, const Vec3& x) {
+  SurfacePoint nearest;
+  for (const geometry::Triangle& face : mesh.faces) {
+    const Vec3 &a = mesh.vertices[static_cast<std::size_t>(face[0])],
+               &b = mesh.vertices[static_cast<std::size_t>(face[1])],
+               &c = mesh.vertices[static_cast<std::size_t>(face[2])];
+    const Vec3 point = nearest_in(a, b, c, x), normal = (b - a).cross(c - a);
+    const double distance = (point - x).norm();
+    if (distance < nearest.distance && normal.norm() > 0) nearest = {point, normal.normalized(), distance};
+  }
+  return nearest;
+}
+
+FractureInput fracture_input(const FractureOptions& options, const geometry::TriangleMesh& mesh,
+                             const Material& material) {
+  const Material ball = find_material(impactor);
+  const SurfacePoint target = surface_near(mesh, *options.at);
+  const double mass = options.impulse / options.speed;
+  mpm::Load load;
+  load.point = target.point;
+  load.outward = options.direction ? (-options.direction->normalized()).eval() : target.normal;
+  if (!(load.outward.dot(target.normal) > 0.05))
+    throw Error(ErrorKind::usage,
+                "--direction points out of the surface at --at; the impactor has to come from outside");
+  load.approach_speed = options.speed;
+  const double ball_radius = std::cbrt(3 * mass / (4 * std::numbers::pi * ball.density));
+  const double body_radius = geometry::bounds(mesh).sizes().maxCoeff() / 2;
+  load.pair.effective_radius = 1 / (1 / ball_radius + 1 / body_radius);
+  load.pair.effective_modulus =
+      mpm::effective_modulus(material.youngs_modulus, material.poisson_ratio, ball.youngs_modulus, ball.poisson_ratio);
+  load.pair.contact_pressure = std::min(material.contact_pressure, ball.contact_pressure);
+  FractureInput input;
+  input.mesh = mesh;
+  input.material = material;
+  input.loads = {load};
+  input.partners = {{mass}};
+  input.crack = options.crack;
+  input.particles = settings_of(options.quality).particles;
+  input.seed = input.solve.seed = options.seed;
+  return input;
+}
+
+void add_fallbacks(Report& report, const Fallbacks& fallbacks) {
+  for (const auto& [name, count] : fallbacks) report.fallbacks[name] += count;
+}
+
+/// The pieces of an impact, with the record of its solve.
+std::vector<geometry::Fragment> hit(const FractureOptions& options, const geometry::TriangleMesh& mesh,
+                                    const SceneBody& body, Report& report, Progress& progress) {
+  const FractureInput input = fracture_input(options, mesh, body.material);
+  FractureOutcome outcome = fracture(input, progress);
+  FractureRecord record = record_of(input, outcome);
+  record.body = body.name;
+  record.impulse = options.impulse;
+  record.fragments = outcome.pieces.size() > 1 ? static_cast<int>(outcome.pieces.size()) : 0;
+  add_fallbacks(report, outcome.fallbacks);
+  report.notes = outcome.cracked.troubles;
+  report.particle_steps = record.particles * record.steps;
+  report.quality = name_of(options.quality);
+  report.seconds.sample = record.seconds.sample;
+  report.seconds.solve = record.seconds.solve;
+  report.seconds.extract = record.seconds.extract;
+  report.seconds.cut = record.seconds.cut;
+  report.fractures.push_back(record);
+  report.extract = record_of(outcome.cracked.extraction);
+  write_crack_surface(outcome.cracked.extraction, options.out / "cracks.ply");
+  return std::move(outcome.cracked.cut.fragments);
+}
+
+std::vector<geometry::Fragment> shatter(const FractureOptions& options, const geometry::TriangleMesh& mesh,
+                                        Report& report, Progress& progress) {
+  const std::vector<Vec3> sites = random_points(mesh, options.cells, options.seed, progress);
+  const geometry::RegionBoundary cells = crack::voronoi_cells(sites, geometry::bounds(mesh), options.seed, progress);
+  Cracked cracked = cut_regions(mesh, cells, options.crack, options.seed, progress);
+  report.seconds.extract = cracked.extract_seconds;
+  report.seconds.cut = cracked.cut_seconds;
+  report.cut_volume_error = cracked.cut.volume_error;
+  report.notes = cracked.troubles;
+  add_fallbacks(report, cracked.fallbacks);
+  return std::move(cracked.cut.fragments);
+}
+
+/// Mean distance of points, from how many lie in boxes that hold a few each. Half empty boxes at the border make it a
+/// few percent too large.
+double spacing_of(const std::vector<Vec3>& points) {
+  Box box;
+  for (const Vec3& x : points) box.extend(x);
+  const double diagonal = box.diagonal().norm();
+  if (!(diagonal > 0)) throw Error(ErrorKind::usage, "all points lie at the same place");
+  for (double width = diagonal / std::cbrt(static_cast<double>(points.size())) / 4;; width *= 1.25) {
+    std::vector<std::array<std::int64_t, 3>> boxes;
+    for (const Vec3& x : points) {
+      const Vec3 at = (x - box.min()) / width;
+      boxes.push_back(
+          {static_cast<std::int64_t>(at.x()), static_cast<std::int64_t>(at.y()), static_cast<std::int64_t>(at.z())});
+    }
+    std::sort(boxes.begin(), boxes.end());
+    const double count = static_cast<double>(std::unique(boxes.begin(), boxes.end()) - boxes.begin());
+    const double share = static_cast<double>(points.size()) / count;
+    if (share >= points_per_box || count <= 1) return width / std::cbrt(share);
+  }
+}
+
+crack::DamageField damage_field(const ExtractOptions& options, const geometry::TriangleMesh& mesh) {
+  geometry::DamagedPoints cloud = geometry::load_points(options.points);
+  for (Vec3& x : cloud.points) x *= options.load.metres_per_unit;
+  crack::DamageField field;
+  const double count = static_cast<double>(cloud.points.size());
+  field.spacing =
+      mesh.faces.empty() ? spacing_of(cloud.points) : std::cbrt(geometry::mass_properties(mesh).volume / count);
+  field.cell_size = 2 * field.spacing;
+  field.points = std::move(cloud.points);
+  field.damage = std::move(cloud.damage);
+  field.damage_time = std::move(cloud.damage_time);
+  return field;
+}
+
+}  // namespace
+
+StillResult fracture_mesh(const FractureOptions& options, Progress& progress) {
+  StillResult result;
+  double total = 0;
+  {
+    const Stopwatch watch(total);
+    SceneBody body = body_of(options);
+    body.material = find_material(options.material);
+    if (options.cells == 0 && !body.material.breakable)
+      throw Error(ErrorKind::usage, "material '" + options.material + "' does not break");
+    const BodyMesh source = body_mesh(body);
+    create_folder(options.out);
+    result.report = report_of(options, body.name);
+    if (!source.repairs.empty()) result.report.repairs.push_back({body.name, source.repairs});
+    const std::vector<geometry::Fragment> fragments = options.cells > 0
+                                                          ? shatter(options, source.mesh, result.report, progress)
+                                                          : hit(options, source.mesh, body, result.report, progress);
+    result.sequence = still_sequence(body, source.mesh, fragments, body.material.density);
+    write_pieces(result.sequence, options.out, result.report.seconds.write);
+  }
+  finish(result, options.out, total);
+  return result;
+}
+
+StillResult extract_points(const ExtractOptions& options, Progress& progress) {
+  StillResult result;
+  double total = 0;
+  {
+    const Stopwatch watch(total);
+    geometry::TriangleMesh mesh;
+    SceneBody body;
+    body.name = options.points.stem().string();
+    if (!options.mesh.empty()) {
+      body = body_of(options);
+      BodyMesh source = body_mesh(body);
+      mesh = std::move(source.mesh);
+      if (!source.repairs.empty()) result.report.repairs.push_back({body.name, source.repairs});
+    }
+    const crack::DamageField field = damage_field(options, mesh);
+    create_folder(options.out);
+    auto repairs = std::move(result.report.repairs);
+    result.report = report_of(options, body.name);
+    result.report.repairs = std::move(repairs);
+    Cracked cracked = mesh.faces.empty() ? extract_only(field, options.crack, options.seed, progress)
+                                         : crack_and_cut(mesh, field, options.crack, options.seed, progress);
+    result.report.extract = record_of(cracked.extraction);
+    result.report.extract->point_spacing = field.spacing;
+    result.report.extract->node_spacing = options.crack.node_spacing;
+    result.report.seconds.extract = cracked.extract_seconds;
+    result.report.seconds.cut = cracked.cut_seconds;
+    result.report.cut_volume_error = cracked.cut.volume_error;
+    result.report.notes = cracked.troubles;
+    add_fallbacks(result.report, cracked.fallbacks);
+    write_crack_surface(cracked.extraction, options.out / "cracks.ply");
+    if (!mesh.faces.empty()) {
+      body.material.name = "material";
+      result.sequence = still_sequence(body, mesh, cracked.cut.fragments, 1);
+      write_pieces(result.sequence, options.out, result.report.seconds.write);
+    }
+  }
+  finish(result, options.out, total);
+  return result;
+}
+
+}  // namespace sunder::pipeline
