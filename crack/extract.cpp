@@ -105,13 +105,12 @@ int smallest_island(const Lattice& lattice, const Settings& settings) {
 
 /// The piece of the node nearest to every point. Pieces are renumbered by their lowest point, so that their numbers do
 /// not depend on how the lattice lies.
-std::vector<int> regions_of_points(const DamageField& field, const Lattice& lattice, Partition& pieces) {
+std::vector<int> regions_of_points(const Raster& raster, Partition& pieces) {
   std::vector<int> number(static_cast<std::size_t>(pieces.count), -1), region;
   int next = 0;
-  region.reserve(field.points.size());
-  for (const Vec3& x : field.points) {
-    const int piece = pieces.piece[static_cast<std::size_t>(lattice.node_at(lattice.nearest(x)))];
-    int& renumbered = number[static_cast<std::size_t>(piece)];
+  region.reserve(raster.nearest.size());
+  for (const int node : raster.nearest) {
+    int& renumbered = number[static_cast<std::size_t>(pieces.piece[static_cast<std::size_t>(node)])];
     if (renumbered < 0) renumbered = next++;
     region.push_back(renumbered);
   }
@@ -186,7 +185,7 @@ Extraction extract(const DamageField& field, const Box& domain, const Settings& 
   if (pieces.count > 1) {
     result.region_count = pieces.count;
     result.debris = static_cast<int>(islands.seeds.size());
-    result.region = regions_of_points(field, raster.lattice, pieces);
+    result.region = regions_of_points(raster, pieces);
     result.effective_count = effective_count(pieces);
   }
   if (pieces.count == 0) return result;

@@ -11,6 +11,7 @@ namespace {
 using geometry::TriangleMesh;
 
 std::string subject(const SceneBody& body) {
+  if (body.line == 0) return body.name;  // not from a scene
   return "body '" + body.name + "' (line " + std::to_string(body.line) + ")";
 }
 

@@ -135,7 +135,9 @@ int say_still(const StillResult& result, const std::filesystem::path& out) {
               << " extension, " << e.partial << " partial)\n";
   }
   for (const FractureRecord& f : result.report.fractures) std::cout << sentence(f) << "\n";
-  std::cout << summary(result.report, result.sequence) << "written to " << out.string() << std::endl;
+  if (!result.sequence.pieces.empty() || !result.report.notes.empty())
+    std::cout << summary(result.report, result.sequence);
+  std::cout << "written to " << out.string() << std::endl;
   return 0;
 }
 

@@ -23,6 +23,7 @@ namespace {
 
 constexpr int candidates_per_cell = 16;  // points of a lattice in the body, among which the sites are drawn
 constexpr double points_per_box = 8;     // of the boxes that measure how densely points lie
+constexpr double far_off = 0.05;         // of the body's diagonal: a point so far from the surface was hardly meant
 constexpr const char* impactor = "steel";
 
 SceneBody body_of(const StillOptions& options) {
@@ -168,9 +169,12 @@ SurfacePoint surface_near(const geometry::TriangleMesh& mesh, const Vec3& x) {
 }
 
 FractureInput fracture_input(const FractureOptions& options, const geometry::TriangleMesh& mesh,
-                             const Material& material) {
+                             const Material& material, Report& report) {
   const Material ball = find_material(impactor);
   const SurfacePoint target = surface_near(mesh, *options.at);
+  if (target.distance > far_off * geometry::bounds(mesh).diagonal().norm())
+    report.notes.push_back("--at lies " + std::to_string(target.distance) +
+                           " m off the surface; the nearest point of the surface was hit (are the units right?)");
   const double mass = options.impulse / options.speed;
   mpm::Load load;
   load.point = target.point;
@@ -203,14 +207,15 @@ void add_fallbacks(Report& report, const Fallbacks& fallbacks) {
 /// The pieces of an impact, with the record of its solve.
 std::vector<geometry::Fragment> hit(const FractureOptions& options, const geometry::TriangleMesh& mesh,
                                     const SceneBody& body, Report& report, Progress& progress) {
-  const FractureInput input = fracture_input(options, mesh, body.material);
+  const FractureInput input = fracture_input(options, mesh, body.material, report);
   FractureOutcome outcome = fracture(input, progress);
   FractureRecord record = record_of(input, outcome);
   record.body = body.name;
   record.impulse = options.impulse;
   record.fragments = outcome.pieces.size() > 1 ? static_cast<int>(outcome.pieces.size()) : 0;
   add_fallbacks(report, outcome.fallbacks);
-  report.notes = outcome.cracked.troubles;
+  const std::vector<std::string>& troubles = outcome.cracked.troubles;
+  report.notes.insert(report.notes.end(), troubles.begin(), troubles.end());
   report.particle_steps = record.particles * record.steps;
   report.quality = name_of(options.quality);
   report.seconds.sample = record.seconds.sample;

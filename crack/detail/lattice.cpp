@@ -68,17 +68,6 @@ int Lattice::node_beside(int node, int i, int j, int k) const {
   return node_at(position(node) + step(i, j, k));
 }
 
-std::pair<int, Vec3> Lattice::cell_of(const Vec3& x) const {
-  const Vec3 local = (x - origin_) / spacing_;
-  std::array<int, 3> cell;
-  Vec3 rest;
-  for (int axis = 0; axis < 3; ++axis) {
-    cell[axis] = static_cast<int>(std::clamp(std::floor(local[axis]), 0.0, static_cast<double>(size_[axis] - 2)));
-    rest[axis] = std::clamp(local[axis] - cell[axis], 0.0, 1.0);
-  }
-  return {step(cell[0], cell[1], cell[2]), rest};
-}
-
 int Lattice::nearest(const Vec3& x) const {
   const auto [corner, rest] = cell_of(x);
   return corner + step(rest.x() >= 0.5, rest.y() >= 0.5, rest.z() >= 0.5);
@@ -137,11 +126,17 @@ Raster rasterise(const DamageField& field, const Box& domain, double spacing, do
   std::vector<char> in_body(sum.weight.size(), 0);
   const double least = body_share * std::pow(spacing / field.spacing, 3);
   for (std::size_t at = 0; at < in_body.size(); ++at) in_body[at] = sum.weight[at] > least;
-  for (const Vec3& x : field.points) in_body[static_cast<std::size_t>(lattice.nearest(x))] = 1;
+  std::vector<int> nearest;
+  nearest.reserve(field.points.size());
+  for (const Vec3& x : field.points) {
+    nearest.push_back(lattice.nearest(x));
+    in_body[static_cast<std::size_t>(nearest.back())] = 1;
+  }
   fill_holes(lattice, sum.weight, in_body);
   lattice.set_nodes(in_body);
+  for (int& position : nearest) position = lattice.node_at(position);
 
-  Raster raster{std::move(lattice), {}, {}};
+  Raster raster{std::move(lattice), {}, std::move(nearest), {}};
   raster.damage.resize(static_cast<std::size_t>(raster.lattice.count()));
   raster.damage_time.assign(raster.damage.size(), -1.0);
   for (std::size_t node = 0; node < raster.damage.size(); ++node) {

@@ -38,7 +38,16 @@ class Lattice {
   int node_beside(int node, int i, int j, int k) const;
 
   /// The position at the lower corner of the lattice's cell that holds `x`, and where in that cell, each in [0, 1].
-  std::pair<int, Vec3> cell_of(const Vec3& x) const;
+  std::pair<int, Vec3> cell_of(const Vec3& x) const {
+    std::array<int, 3> cell;
+    Vec3 rest;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double local = (x[axis] - origin_[axis]) / spacing_;
+      cell[axis] = std::clamp(static_cast<int>(local), 0, size_[axis] - 2);
+      rest[axis] = std::clamp(local - cell[axis], 0.0, 1.0);
+    }
+    return {step(cell[0], cell[1], cell[2]), rest};
+  }
   /// The position nearest to `x`.
   int nearest(const Vec3& x) const;
   /// Calls visit(position, weight) for the eight corners of that cell with their trilinear weights.
@@ -73,6 +82,7 @@ class Lattice {
 struct Raster {
   Lattice lattice;
   std::vector<double> damage;       ///< per node: weighted share of its points that are crack, in [0, 1]
+  std::vector<int> nearest;         ///< per point of the field: the node nearest to it
   std::vector<double> damage_time;  ///< per node: weighted mean of its points that have one [s], -1: none has
 };
 
