@@ -1,10 +1,13 @@
 #include "geometry/load.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <exception>
 #include <fstream>
 #include <iomanip>
 #include <limits>
+#include <utility>
 
 #include <assimp/Importer.hpp>
 #include <assimp/postprocess.h>
@@ -29,31 +32,107 @@ Mat3 rotation_to_y_up(UpAxis up) {
   return rotation;
 }
 
-Vec3 transformed_point(const aiMatrix4x4& matrix, const aiVector3D& point) {
-  const Vec3 x(point.x, point.y, point.z);
-  return {Vec3(matrix.a1, matrix.a2, matrix.a3).dot(x) + matrix.a4,
-          Vec3(matrix.b1, matrix.b2, matrix.b3).dot(x) + matrix.b4,
-          Vec3(matrix.c1, matrix.c2, matrix.c3).dot(x) + matrix.c4};
+Mat3 linear_part(const aiMatrix4x4& m) {
+  Mat3 result;
+  result << m.a1, m.a2, m.a3, m.b1, m.b2, m.b3, m.c1, m.c2, m.c3;
+  return result;
 }
 
-void append_mesh(TriangleMesh& mesh, const aiMesh& part, const aiMatrix4x4& to_world) {
-  const int first = static_cast<int>(mesh.vertices.size());
-  for (unsigned i = 0; i < part.mNumVertices; ++i)
-    mesh.vertices.push_back(transformed_point(to_world, part.mVertices[i]));
-  const bool mirrored = to_world.Determinant() < 0;
-  for (unsigned i = 0; i < part.mNumFaces; ++i) {
-    const aiFace& face = part.mFaces[i];
-    if (face.mNumIndices != 3) continue;  // points and lines
-    const auto corner = [&](int at) { return first + static_cast<int>(face.mIndices[at]); };
-    mesh.faces.push_back({corner(0), corner(mirrored ? 2 : 1), corner(mirrored ? 1 : 2)});
+Vec3 to_vec3(const aiVector3D& x) { return {x.x, x.y, x.z}; }
+
+Vec3 unit_or_zero(const Vec3& x) {
+  const double length = x.norm();
+  return std::isfinite(length) && length > 0 ? Vec3(x / length) : Vec3(Vec3::Zero());
+}
+
+/// All meshes of a scene as one.
+class Collector {
+ public:
+  Collector(const fs::path& file, const aiScene& scene) : file_(file), scene_(scene) {
+    if (scene.mRootNode != nullptr) append_node(*scene.mRootNode, aiMatrix4x4());
+    if (!any_uv_) result_.attributes.uv.clear();
+    if (!any_normal_) result_.attributes.normal.clear();
+    name_materials();
   }
-}
 
-void append_node(TriangleMesh& mesh, const aiScene& scene, const aiNode& node, const aiMatrix4x4& parent) {
-  const aiMatrix4x4 to_world = parent * node.mTransformation;
-  for (unsigned i = 0; i < node.mNumMeshes; ++i) append_mesh(mesh, *scene.mMeshes[node.mMeshes[i]], to_world);
-  for (unsigned i = 0; i < node.mNumChildren; ++i) append_node(mesh, scene, *node.mChildren[i], to_world);
-}
+  /// Where normals are zero the file has none.
+  TexturedMesh take() { return std::move(result_); }
+
+ private:
+  void append_node(const aiNode& node, const aiMatrix4x4& parent) {
+    const aiMatrix4x4 to_world = parent * node.mTransformation;
+    for (unsigned i = 0; i < node.mNumMeshes; ++i) append_mesh(*scene_.mMeshes[node.mMeshes[i]], to_world);
+    for (unsigned i = 0; i < node.mNumChildren; ++i) append_node(*node.mChildren[i], to_world);
+  }
+
+  void append_mesh(const aiMesh& part, const aiMatrix4x4& to_world) {
+    const Mat3 linear = linear_part(to_world);
+    const Vec3 offset(to_world.a4, to_world.b4, to_world.c4);
+    const int first = static_cast<int>(result_.mesh.vertices.size());
+    for (unsigned i = 0; i < part.mNumVertices; ++i) {
+      result_.mesh.vertices.push_back(linear * to_vec3(part.mVertices[i]) + offset);
+    }
+    any_uv_ |= part.HasTextureCoords(0);
+    any_normal_ |= part.HasNormals();
+    const double determinant = linear.determinant();
+    const Mat3 of_normals = determinant != 0 ? Mat3(linear.inverse().transpose()) : Mat3(Mat3::Zero());
+    for (unsigned i = 0; i < part.mNumFaces; ++i) {
+      const aiFace& face = part.mFaces[i];
+      if (face.mNumIndices != 3) continue;  // points and lines
+      std::array<unsigned, 3> corner = {face.mIndices[0], face.mIndices[1], face.mIndices[2]};
+      if (std::max({corner[0], corner[1], corner[2]}) >= part.mNumVertices) {
+        fail(ErrorKind::mesh, file_, "holds a face that names a vertex that does not exist");
+      }
+      if (determinant < 0) std::swap(corner[1], corner[2]);
+      append_face(part, corner, first, of_normals);
+    }
+  }
+
+  void append_face(const aiMesh& part, const std::array<unsigned, 3>& corner, int first, const Mat3& of_normals) {
+    Triangle face;
+    std::array<Uv, 3> uv;
+    std::array<Vec3, 3> normal;
+    for (int k = 0; k < 3; ++k) {
+      face[k] = first + static_cast<int>(corner[k]);
+      uv[k].setZero();
+      normal[k].setZero();
+      if (part.HasTextureCoords(0)) uv[k] = to_vec3(part.mTextureCoords[0][corner[k]]).head<2>();
+      if (!uv[k].allFinite()) uv[k].setZero();
+      if (part.HasNormals()) normal[k] = unit_or_zero(of_normals * to_vec3(part.mNormals[corner[k]]));
+    }
+    result_.mesh.faces.push_back(face);
+    result_.attributes.uv.push_back(uv);
+    result_.attributes.normal.push_back(normal);
+    result_.attributes.material.push_back(static_cast<int>(part.mMaterialIndex));
+  }
+
+  void name_materials() {
+    SurfaceAttributes& attributes = result_.attributes;
+    std::vector<int> number(scene_.mNumMaterials, -1);
+    for (const int material : attributes.material) {
+      if (material < static_cast<int>(number.size())) number[material] = 0;
+    }
+    for (unsigned i = 0; i < number.size(); ++i) {
+      if (number[i] < 0) continue;
+      number[i] = static_cast<int>(attributes.material_names.size());
+      attributes.material_names.push_back(scene_.mMaterials[i]->GetName().C_Str());
+    }
+    // What assimp makes up where a file has no materials.
+    const std::vector<std::string>& names = attributes.material_names;
+    if (names.empty() || (names.size() == 1 && (names[0].empty() || names[0] == AI_DEFAULT_MATERIAL_NAME))) {
+      attributes.material.clear();
+      attributes.material_names.clear();
+    }
+    for (int& material : attributes.material) {
+      material = material < static_cast<int>(number.size()) ? number[material] : 0;
+    }
+  }
+
+  const fs::path& file_;
+  const aiScene& scene_;
+  TexturedMesh result_;
+  bool any_uv_ = false, any_normal_ = false;
+};
 
 // assimp makes room for as many vertices and faces as the head of an OFF file promises before it looks for them.
 void require_honest_off_header(const fs::path& file) {
@@ -68,14 +147,12 @@ void require_honest_off_header(const fs::path& file) {
   }
 }
 
-TriangleMesh read(const fs::path& file) {
+TexturedMesh read(const fs::path& file) {
   if (!fs::is_regular_file(file)) fail(ErrorKind::io, file, "no such file");
   if (file.extension() == ".off") require_honest_off_header(file);
   Assimp::Importer importer;
-  // Only positions matter: without normals and texture coordinates vertices weld across seams.
-  constexpr int kIgnored = aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_COLORS |
-                           aiComponent_TEXCOORDS | aiComponent_TEXTURES | aiComponent_MATERIALS | aiComponent_LIGHTS |
-                           aiComponent_CAMERAS | aiComponent_ANIMATIONS | aiComponent_BONEWEIGHTS;
+  constexpr int kIgnored = aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_COLORS | aiComponent_TEXTURES |
+                           aiComponent_LIGHTS | aiComponent_CAMERAS | aiComponent_ANIMATIONS | aiComponent_BONEWEIGHTS;
   importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, kIgnored);
   const aiScene* scene = nullptr;
   try {
@@ -84,9 +161,42 @@ TriangleMesh read(const fs::path& file) {
     fail(ErrorKind::io, file, error.what());
   }
   if (scene == nullptr) fail(ErrorKind::io, file, importer.GetErrorString());
-  TriangleMesh mesh;
-  if (scene->mRootNode != nullptr) append_node(mesh, *scene, *scene->mRootNode, aiMatrix4x4());
-  return mesh;
+  return Collector(file, *scene).take();
+}
+
+template <typename T>
+void keep(std::vector<T>& list, const std::vector<char>& kept) {
+  if (list.empty()) return;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    if (kept[i]) list[count++] = list[i];
+  }
+  list.resize(count);
+}
+
+// Merges vertices at equal positions, across the seams of attributes, and drops what has no area then.
+void weld(TexturedMesh& textured) {
+  TriangleMesh& mesh = textured.mesh;
+  const std::vector<int> same = detail::coincident(mesh.vertices, 0);
+  std::vector<char> kept;
+  for (Triangle& face : mesh.faces) {
+    for (int& vertex : face) vertex = same[vertex];
+    kept.push_back(!detail::names_a_vertex_twice(face));
+  }
+  keep(mesh.faces, kept);
+  keep(textured.attributes.uv, kept);
+  keep(textured.attributes.normal, kept);
+  keep(textured.attributes.material, kept);
+  mesh = detail::compacted(mesh);
+}
+
+void turn_normals(TexturedMesh& textured, const Mat3& rotation) {
+  for (std::size_t i = 0; i < textured.attributes.normal.size(); ++i) {
+    const auto& [a, b, c] = textured.mesh.faces[i];
+    const Vec3& at = textured.mesh.vertices[a];
+    const Vec3 flat = unit_or_zero((textured.mesh.vertices[b] - at).cross(textured.mesh.vertices[c] - at));
+    for (Vec3& normal : textured.attributes.normal[i]) normal = normal.isZero(0) ? flat : Vec3(rotation * normal);
+  }
 }
 
 void write_obj(std::ostream& out, const TriangleMesh& mesh) {
@@ -102,20 +212,24 @@ void write_off(std::ostream& out, const TriangleMesh& mesh) {
 
 }  // namespace
 
-TriangleMesh load_mesh(const fs::path& file, const LoadSettings& settings) {
-  TriangleMesh mesh = read(file);
-  if (mesh.faces.empty()) fail(ErrorKind::mesh, file, "holds no triangle");
-  const int count = static_cast<int>(mesh.vertices.size());
-  for (const auto& [a, b, c] : mesh.faces) {
-    const bool exist = std::min({a, b, c}) >= 0 && std::max({a, b, c}) < count;
-    if (!exist) fail(ErrorKind::mesh, file, "holds a face that names a vertex that does not exist");
-  }
-  for (const Vec3& vertex : mesh.vertices) {
+TexturedMesh load_textured_mesh(const fs::path& file, const LoadSettings& settings) {
+  TexturedMesh result = read(file);
+  if (result.mesh.faces.empty()) fail(ErrorKind::mesh, file, "holds no triangle");
+  for (const Vec3& vertex : result.mesh.vertices) {
     if (!vertex.allFinite()) fail(ErrorKind::mesh, file, "holds a vertex whose position is not a finite number");
   }
-  mesh = detail::welded(mesh, 0);
-  if (mesh.faces.empty()) fail(ErrorKind::mesh, file, "holds only triangles that have shrunk to a line or a point");
-  return transformed(mesh, settings.metres_per_unit * rotation_to_y_up(settings.up), Vec3::Zero());
+  weld(result);
+  if (result.mesh.faces.empty()) {
+    fail(ErrorKind::mesh, file, "holds only triangles that have shrunk to a line or a point");
+  }
+  const Mat3 rotation = rotation_to_y_up(settings.up);
+  result.mesh = transformed(result.mesh, settings.metres_per_unit * rotation, Vec3::Zero());
+  turn_normals(result, rotation);
+  return result;
+}
+
+TriangleMesh load_mesh(const fs::path& file, const LoadSettings& settings) {
+  return load_textured_mesh(file, settings).mesh;
 }
 
 void save_mesh(const TriangleMesh& mesh, const fs::path& file) {

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 
+#include "geometry/attributes.h"
 #include "geometry/mesh.h"
 
 namespace sunder::geometry {
@@ -19,6 +20,17 @@ struct LoadSettings {
 /// when the file is missing or unreadable (with assimp's reason), ErrorKind::mesh when it holds no triangle or a
 /// position that is not finite.
 TriangleMesh load_mesh(const std::filesystem::path& file, const LoadSettings& settings = {});
+
+struct TexturedMesh {
+  TriangleMesh mesh;
+  SurfaceAttributes attributes;
+};
+
+/// The same mesh with what its surface carries: the first set of texture coordinates, normals (turned with node
+/// transforms and axes, unit length) and materials with their names, as far as the file has them. Where only parts of a
+/// file have texture coordinates or normals, the others get (0, 0) and the normals of their faces. Materials are
+/// numbered as in the file, those that no face uses left out; a file without materials has none. Errors: as load_mesh.
+TexturedMesh load_textured_mesh(const std::filesystem::path& file, const LoadSettings& settings = {});
 
 /// Writes a binary-exact (17 digits) OFF or OBJ by extension; for tests and for looking. Errors: ErrorKind::io.
 void save_mesh(const TriangleMesh& mesh, const std::filesystem::path& file);

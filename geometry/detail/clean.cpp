@@ -19,10 +19,6 @@ int open_sides(const TriangleMesh& mesh) {
   return count;
 }
 
-bool names_a_vertex_twice(const Triangle& face) {
-  return face[0] == face[1] || face[1] == face[2] || face[2] == face[0];
-}
-
 TriangleMesh without_unusable_faces(const TriangleMesh& mesh) {
   const int count = static_cast<int>(mesh.vertices.size());
   const auto unusable = [&](const Triangle& face) {
@@ -87,23 +83,33 @@ TriangleMesh compacted(const TriangleMesh& mesh) {
   return result;
 }
 
-TriangleMesh welded(const TriangleMesh& mesh, double tolerance) {
+bool names_a_vertex_twice(const Triangle& face) {
+  return face[0] == face[1] || face[1] == face[2] || face[2] == face[0];
+}
+
+std::vector<int> coincident(const std::vector<Vec3>& vertices, double tolerance) {
   // Sweep along a direction that is no symmetry of usual meshes, so that few vertices share a place on it.
   const Vec3 direction = Vec3(1, 0.618, 0.367).normalized();
   std::vector<std::pair<double, int>> order;
-  for (int i = 0; i < static_cast<int>(mesh.vertices.size()); ++i)
-    order.emplace_back(direction.dot(mesh.vertices[i]), i);
+  for (int i = 0; i < static_cast<int>(vertices.size()); ++i) order.emplace_back(direction.dot(vertices[i]), i);
   std::sort(order.begin(), order.end());
   DisjointSets same(static_cast<int>(order.size()));
   for (std::size_t i = 0; i < order.size(); ++i) {
-    const Vec3& at = mesh.vertices[order[i].second];
+    const Vec3& at = vertices[order[i].second];
     for (std::size_t j = i + 1; j < order.size() && order[j].first - order[i].first <= tolerance; ++j) {
-      if ((mesh.vertices[order[j].second] - at).norm() <= tolerance) same.unite(order[i].second, order[j].second);
+      if ((vertices[order[j].second] - at).norm() <= tolerance) same.unite(order[i].second, order[j].second);
     }
   }
+  std::vector<int> result(vertices.size());
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] = same.find(static_cast<int>(i));
+  return result;
+}
+
+TriangleMesh welded(const TriangleMesh& mesh, double tolerance) {
+  const std::vector<int> same = coincident(mesh.vertices, tolerance);
   TriangleMesh result = mesh;
   for (Triangle& face : result.faces) {
-    for (int& vertex : face) vertex = same.find(vertex);
+    for (int& vertex : face) vertex = same[vertex];
   }
   std::erase_if(result.faces, names_a_vertex_twice);
   return compacted(result);

@@ -12,6 +12,11 @@ using Steps = std::vector<std::string>;
 /// "filled 1 hole", "filled 3 holes".
 std::string step(const std::string& verb, std::size_t count, const std::string& one, const std::string& many);
 
+/// Per vertex the lowest index among the vertices that chains of at most `tolerance` (0: equal positions) join it to.
+std::vector<int> coincident(const std::vector<Vec3>& vertices, double tolerance);
+
+bool names_a_vertex_twice(const Triangle& face);
+
 /// Merges vertices that are at most `tolerance` apart (0: equal positions) into the one with the lowest index. Faces
 /// that name a vertex twice afterwards are dropped.
 TriangleMesh welded(const TriangleMesh& mesh, double tolerance);
