@@ -78,4 +78,19 @@ bool InsideTest::operator()(const Vec3& point) const {
   return inside;
 }
 
+bool InsideTest::on_surface(const Vec3& point) const {
+  if (!box_.contains(point)) return false;
+  const int at = bin(1, point.y()) * bins_[0] + bin(0, point.x());
+  for (int i = first_[at]; i < first_[at + 1]; ++i) {
+    const auto& [a, b, c] = mesh_.faces[faces_[i]];
+    Box box(mesh_.vertices[a], mesh_.vertices[a]);
+    box.extend(mesh_.vertices[b]).extend(mesh_.vertices[c]);
+    if (!box.contains(point)) continue;
+    const Kernel::Triangle_3 face(to_point(mesh_.vertices[a]), to_point(mesh_.vertices[b]),
+                                  to_point(mesh_.vertices[c]));
+    if (!face.is_degenerate() && face.has_on(to_point(point))) return true;
+  }
+  return false;
+}
+
 }  // namespace sunder::geometry::detail

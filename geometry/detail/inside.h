@@ -17,6 +17,9 @@ class InsideTest {
   /// if moved by an infinitesimal, the same for all faces, so no crossing is lost or counted twice.
   bool operator()(const Vec3& point) const;
 
+  /// On a face, an edge or a vertex, exactly.
+  bool on_surface(const Vec3& point) const;
+
  private:
   int bin(int axis, double x) const;
 
