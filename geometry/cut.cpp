@@ -6,9 +6,9 @@
 #include <numeric>
 
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 
 #include "core/random.h"
+#include "geometry/detail/apart.h"
 #include "geometry/detail/assemble.h"
 #include "geometry/detail/embedding.h"
 #include "geometry/detail/predicates.h"
@@ -29,8 +29,6 @@ constexpr int kAttempts = 8;
 
 [[noreturn]] void reject(const std::string& why) { throw Error(ErrorKind::mesh, why); }
 
-bool less(const Vec3& a, const Vec3& b) { return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end()); }
-
 // ---- Input ----------------------------------------------------------------------------------------------------
 
 bool indices_in_range(const TriangleMesh& mesh) {
@@ -38,19 +36,6 @@ bool indices_in_range(const TriangleMesh& mesh) {
   return std::all_of(mesh.faces.begin(), mesh.faces.end(), [&](const Triangle& face) {
     return std::all_of(face.begin(), face.end(), [&](int vertex) { return vertex >= 0 && vertex < count; });
   });
-}
-
-bool has_coincident_vertices(const TriangleMesh& mesh) {
-  std::vector<bool> used(mesh.vertices.size(), false);
-  for (const Triangle& face : mesh.faces) {
-    for (const int vertex : face) used[vertex] = true;
-  }
-  std::vector<Vec3> points;
-  for (std::size_t i = 0; i < used.size(); ++i) {
-    if (used[i]) points.push_back(mesh.vertices[i]);
-  }
-  tbb::parallel_sort(points.begin(), points.end(), less);
-  return std::adjacent_find(points.begin(), points.end()) != points.end();
 }
 
 bool has_degenerate_face(const TriangleMesh& mesh) {
@@ -77,7 +62,7 @@ struct Prepared {
   double volume;
 };
 
-Prepared prepare(const TriangleMesh& body) {
+void require_closed_surface(const TriangleMesh& body) {
   const auto finite = [](const Vec3& x) { return x.allFinite(); };
   if (body.faces.empty()) reject("the body has no faces");
   if (!indices_in_range(body)) reject("a face of the body has a vertex that does not exist");
@@ -85,8 +70,10 @@ Prepared prepare(const TriangleMesh& body) {
     reject("the body has a vertex that is not finite");
   }
   if (!is_closed_two_manifold(body)) reject("the body is not a closed two-manifold");
-  if (has_coincident_vertices(body)) reject("the body has coincident vertices");
   if (has_degenerate_face(body)) reject("the body has a face without area");
+}
+
+Prepared prepare(const TriangleMesh& body) {
   Prepared result{body,
                   {body.faces, detail::edges_of(body.faces, static_cast<int>(body.vertices.size()))},
                   BoxTree(body.vertices, body.faces),
@@ -200,8 +187,11 @@ CutResult cut(const TriangleMesh& body, const RegionBoundary& regions, const Cut
   progress.checkpoint("cut", 0);
   try {
     const CrackComplex complex = detail::crack_complex(regions);
-    const Prepared prepared = prepare(body);
-    return cut_prepared(prepared, complex, settings.volume_tolerance, progress);
+    require_closed_surface(body);
+    const auto cut_solid = [&](const TriangleMesh& solid) {
+      return cut_prepared(prepare(solid), complex, settings.volume_tolerance, progress);
+    };
+    return detail::has_coincident_vertices(body) ? cut_solid(detail::moved_apart(body)) : cut_solid(body);
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::mesh) throw;
     return refused(CutStatus::bad_input, error.what());

@@ -22,6 +22,8 @@ namespace {
 constexpr double kNudged = 1e-5;
 // Areas of the parts of a face against the face: rounding.
 constexpr double kAreaKept = 1e-9;
+// Fans that touch are moved apart by 1e-9 of the body's size (3 m), so volumes change by that times their area.
+constexpr double kMovedApart = 1e-8;
 // A cut point is rounded once; its distance from the planes that made it, relative to the body's size.
 constexpr double kOnPlane = 1e-12;
 
@@ -303,6 +305,52 @@ TEST(Cut, RegionsMayTouchThemselvesWithin) {
     ASSERT_EQ(result.status, CutStatus::ok) << seed << ": " << result.detail;
     EXPECT_EQ(broken_cut(body, result), "") << seed;
   }
+}
+
+/// Cuts what touches itself again.
+struct Again {
+  int touching = 0, fragments = 0;
+};
+
+void cut_again(const CutResult& first, Again& again) {
+  for (const Fragment& fragment : first.fragments) {
+    if (!touches_itself(fragment)) continue;
+    ++again.touching;
+    const CutResult second = cut_silently(fragment.mesh, random_regions(fragment.mesh, 6, 3, again.touching));
+    ASSERT_EQ(second.status, CutStatus::ok) << second.detail;
+    double volume = 0;
+    for (const Fragment& part : second.fragments) {
+      EXPECT_EQ(broken_solid(part), "");
+      volume += mass_properties(part.mesh).volume;
+    }
+    EXPECT_EQ(SharedFaces(second.fragments).unmatched(), "");
+    EXPECT_NEAR(volume / mass_properties(fragment.mesh).volume, 1, kMovedApart);
+    again.fragments += static_cast<int>(second.fragments.size());
+  }
+}
+
+TEST(Cut, WhatTouchesItselfCanBeCutAgain) {
+  const TriangleMesh body = turned_by(sphere(1, 1), 3);
+  const Vec3 center = bounds(body).center();
+  Again again;
+  for (int mask = 0; mask < 256; ++mask) {
+    SCOPED_TRACE(mask);
+    std::vector<int> region(8);
+    for (int i = 0; i < 8; ++i) region[i] = mask >> i & 1;
+    RegionBoundary regions = lattice_of({-4, 0.05, 4}, region);
+    for (Vec3& x : regions.vertices) x += center;
+    cut_again(cut_silently(body, regions), again);
+  }
+  for (int seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE(seed);
+    std::vector<int> region(27);
+    for (int i = 0; i < 27; ++i) region[i] = random_unit(seed, 1, i) < 0.5;
+    RegionBoundary regions = lattice_of({-4, -0.31, 0.35, 4}, region);
+    for (Vec3& x : regions.vertices) x += center;
+    cut_again(cut_silently(body, regions), again);
+  }
+  EXPECT_GE(again.touching, 100);
+  EXPECT_GE(again.fragments, 2 * again.touching);
 }
 
 TEST(Cut, IsDeterministicAndOrdered) {
