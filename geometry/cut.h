@@ -60,8 +60,9 @@ struct CutSettings {
 /// closed, two-manifold and free of self-intersections; when a crack only touches a face, an edge or a vertex of the
 /// body, or rounding would break a fragment, all regions are moved together by `nudges` and the cut is made again.
 /// Where a region touches itself along an edge or at a vertex, each fan of faces has a vertex of its own there: the
-/// fragment is a two-manifold with coincident vertices. Fragments are ordered by region, then by their lowest vertex.
-/// The result does not depend on the number of threads.
+/// fragment is a two-manifold with coincident vertices. Such a fragment may be cut again: its coincident vertices are
+/// moved apart by about 1e-9 of its size first, and the fragments are those of the body that it becomes. Fragments are
+/// ordered by region, then by their lowest vertex. The result does not depend on the number of threads.
 CutResult cut(const TriangleMesh& body, const RegionBoundary& regions, const CutSettings& settings, Progress& progress);
 
 }  // namespace sunder::geometry

@@ -15,7 +15,7 @@ namespace sunder::geometry::detail {
 namespace {
 
 constexpr double kDistance = 1e-9;  // of the body's size: far above rounding, far below what anyone sees
-constexpr int kAttempts = 16;
+constexpr int kAttempts = 40;
 
 bool less(const Vec3& a, const Vec3& b) { return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end()); }
 
@@ -74,6 +74,13 @@ Vec3 direction(const TriangleMesh& mesh, int vertex, const Fan& fan) {
                                                                : Vec3(outward.normalized());
 }
 
+// More and more sideways, and less far.
+Vec3 another_direction(const Vec3& first, int vertex, int attempt) {
+  const auto random = [&](int stream) { return 2 * random_unit(attempt, stream, vertex) - 1; };
+  const double share = static_cast<double>(attempt) / kAttempts;
+  return (first + share * Vec3(random(0), random(1), random(2))) * (0.6 + 0.4 * random(3));
+}
+
 std::map<int, Fan> fans_of(const TriangleMesh& mesh, const std::vector<char>& wanted) {
   std::map<int, Fan> fans;
   for (const Triangle& face : mesh.faces) {
@@ -96,19 +103,28 @@ bool has_coincident_vertices(const TriangleMesh& mesh) {
 TriangleMesh moved_apart(const TriangleMesh& mesh) {
   const std::map<int, Fan> fans = fans_of(mesh, coincident_vertices(mesh));
   const double distance = kDistance * bounds(mesh).diagonal().norm();
+  std::map<int, int> tried;  // per vertex
+  TriangleMesh result = mesh;
+  for (const auto& [vertex, fan] : fans) {
+    result.vertices[vertex] += distance * direction(mesh, vertex, fan);
+    tried[vertex] = 0;
+  }
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    TriangleMesh result = mesh;
-    for (const auto& [vertex, fan] : fans) {
-      const auto random = [&, at = vertex](int axis) { return 2 * random_unit(attempt, axis, at) - 1; };
-      const Vec3 sideways = attempt == 0 ? Vec3(Vec3::Zero()) : Vec3(random(0), random(1), random(2));
-      const double share = static_cast<double>(attempt) / kAttempts;
-      result.vertices[vertex] += distance * (direction(mesh, vertex, fan) + share * sideways);
+    const std::vector<char> meets = meeting_faces(result, BoxTree(result.vertices, result.faces));
+    if (std::find(meets.begin(), meets.end(), true) == meets.end()) return result;
+    std::vector<char> again(mesh.vertices.size(), false);
+    for (std::size_t face = 0; face < meets.size(); ++face) {
+      for (const int vertex : mesh.faces[face]) again[vertex] |= meets[face];
     }
-    if (!has_coincident_vertices(result) && !intersects_itself(result, BoxTree(result.vertices, result.faces))) {
-      return result;
+    const auto moves = [&](const auto& entry) { return again[entry.first] != 0; };
+    if (std::none_of(fans.begin(), fans.end(), moves)) break;  // the faces meet elsewhere
+    for (const auto& [vertex, fan] : fans) {
+      if (!again[vertex]) continue;
+      result.vertices[vertex] =
+          mesh.vertices[vertex] + distance * another_direction(direction(mesh, vertex, fan), vertex, ++tried[vertex]);
     }
   }
-  throw Error(ErrorKind::mesh, "the body has coincident vertices that cannot be moved apart");
+  throw Error(ErrorKind::mesh, "the body intersects itself, or has coincident vertices that cannot be moved apart");
 }
 
 }  // namespace sunder::geometry::detail

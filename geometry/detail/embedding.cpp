@@ -134,6 +134,16 @@ bool intersects_itself(const TriangleMesh& mesh, const BoxTree& tree) {
   return found;
 }
 
+std::vector<char> meeting_faces(const TriangleMesh& mesh, const BoxTree& tree) {
+  std::vector<char> meets(mesh.faces.size(), false);
+  tbb::parallel_for(std::size_t{0}, mesh.faces.size(), [&](std::size_t i) {
+    tree.visit(around(mesh.vertices, mesh.faces[i]), [&](int j) {
+      if (j != static_cast<int>(i) && clash(mesh.vertices, mesh.faces[i], mesh.faces[j])) meets[i] = true;
+    });
+  });
+  return meets;
+}
+
 void require_embedded(const Arrangement& arrangement, const CrackComplex& complex, const BoxTree& tree,
                       const std::vector<char>& is_inside) {
   const std::vector<Vec3>& points = arrangement.points.positions();

@@ -9,6 +9,9 @@ namespace sunder::geometry::detail {
 /// Of all pairs of faces. Exact, in parallel.
 bool intersects_itself(const TriangleMesh& mesh, const BoxTree& tree);
 
+/// Per face whether it meets another one so. Exact, in parallel.
+std::vector<char> meeting_faces(const TriangleMesh& mesh, const BoxTree& tree);
+
 /// Of the rounded parts that the cut made, against each other and against the faces of the body that it left alone.
 /// `tree` holds the faces of the body, which must not intersect each other. Parts of one face of the body or of one
 /// plane region face are known to be apart, as none of them is turned. Errors: ErrorKind::mesh when two parts meet, or
