@@ -4,7 +4,6 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
-#include <sstream>
 
 #include "core/error.h"
 #include "geometry/detail/ply_points.h"
@@ -22,14 +21,16 @@ namespace {
 
 std::string contents(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  if (!in || !(text << in.rdbuf())) throw Error(ErrorKind::io, "cannot read " + file.string());
-  return std::move(text).str();
+  std::string text;
+  char block[1 << 16];
+  while (in.read(block, sizeof block) || in.gcount() > 0) text.append(block, static_cast<std::size_t>(in.gcount()));
+  if (!in.eof() || in.bad()) throw Error(ErrorKind::io, "cannot read " + file.string());
+  return text;
 }
 
 bool is_separator(char c) { return c == ' ' || c == '\t' || c == ',' || c == ';' || c == '\r'; }
 
-/// The numbers of a line; false when something else is there.
+/// The numbers of a line, up to the first thing that is none; false when there is one.
 bool parse_numbers(std::string_view line, std::vector<double>& numbers) {
   numbers.clear();
   const char *at = line.data(), *const end = at + line.size();
@@ -48,6 +49,8 @@ DamagedPoints parse_text(const std::filesystem::path& file, std::string_view tex
   DamagedPoints cloud;
   std::vector<double> numbers;
   std::size_t columns = 0;
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
   for (int number = 1; !text.empty(); ++number) {
     const std::size_t length = std::min(text.find('\n'), text.size());
     const std::string_view line = text.substr(0, length);
@@ -56,7 +59,7 @@ DamagedPoints parse_text(const std::filesystem::path& file, std::string_view tex
     const std::size_t first = line.find_first_not_of(" \t\r");
     if (first == std::string_view::npos || line[first] == '#') continue;
     if (!parse_numbers(line, numbers)) {
-      if (cloud.points.empty() && columns == 0) {  // names of columns
+      if (cloud.points.empty() && columns == 0 && numbers.empty()) {  // names of columns
         columns = std::string_view::npos;
         continue;
       }
@@ -85,8 +88,8 @@ void check(const std::filesystem::path& file, DamagedPoints& cloud) {
     if (!(damage >= -rounding && damage <= 1 + rounding))
       refuse(file, where, "damage is " + std::to_string(damage) + "; it must lie between 0 and 1");
     damage = std::clamp(damage, 0.0, 1.0);
-    if (!cloud.damage_time.empty() && std::isnan(cloud.damage_time[i]))
-      refuse(file, where, "its damage time is not a number; write -1 for never");
+    if (!cloud.damage_time.empty() && !std::isfinite(cloud.damage_time[i]))
+      refuse(file, where, "its damage time is not finite; write -1 for never");
   }
 }
 

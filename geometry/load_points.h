@@ -16,8 +16,7 @@ struct DamagedPoints {
 /// Reads by extension:
 /// - .ply: ASCII or binary little-endian; vertex properties x, y, z, damage and, if there, damage_time;
 /// - .vdb: the first point grid (attributes P, damage and, if there, damage_time, as float or double), or else the
-/// first
-///   float grid of the name "damage", or the only float grid: a point for the centre of every active voxel;
+///   first float grid of the name "damage", or the only float grid: a point for the centre of every active voxel;
 /// - anything else: text, `x y z damage [damage_time]` a line, separated by blanks, tabs, commas or semicolons; lines
 ///   that are empty or start with # are skipped, and so is a first line that names columns.
 /// Damage is clamped to [0, 1] when it is within 1e-6 of it. Errors: ErrorKind::io when the file cannot be read,

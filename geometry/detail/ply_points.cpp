@@ -52,6 +52,7 @@ class Reader {
   Reader(const std::filesystem::path& file, std::string_view bytes) : file_(file), bytes_(bytes) {}
 
   DamagedPoints run() {
+    if (bytes_.empty()) refuse("there are no points in it");
     const Layout layout = read_header();
     std::array<int, 5> column{};
     constexpr std::array<const char*, 5> wanted = {"x", "y", "z", "damage", "damage_time"};

@@ -88,11 +88,10 @@ DamagedPoints load_vdb_points(const std::filesystem::path& file) {
   std::vector<openvdb::FloatGrid::Ptr> floats;
   for (const openvdb::GridBase::Ptr& grid : grids) {
     if (const auto points = openvdb::gridPtrCast<PointDataGrid>(grid)) return points_of(*points, file);
-    if (const auto values = openvdb::gridPtrCast<openvdb::FloatGrid>(grid)) {
-      if (values->getName() == "damage") return voxels_of(*values);
-      floats.push_back(values);
-    }
+    if (const auto values = openvdb::gridPtrCast<openvdb::FloatGrid>(grid)) floats.push_back(values);
   }
+  for (const openvdb::FloatGrid::Ptr& values : floats)
+    if (values->getName() == "damage") return voxels_of(*values);
   if (floats.size() == 1) return voxels_of(*floats.front());
   refuse(file, floats.empty() ? "it holds no point grid and no float grid"
                               : "it holds several float grids and none is called 'damage'");
