@@ -16,6 +16,7 @@ constexpr int attempts_with_hairlines = 3, attempts_with_detail = 3;
 constexpr double narrowing = 4;  // of hairlines, from attempt to attempt: folded sheets have no room for wide gaps
 
 crack::DamageTimes times_of(const crack::DamageField& field) {
+  if (field.damage_time.empty()) return {};
   return {field.points, field.damage_time, field.spacing};
 }
 

@@ -224,6 +224,9 @@ std::vector<geometry::Fragment> hit(const FractureOptions& options, const geomet
   report.seconds.cut = record.seconds.cut;
   report.fractures.push_back(record);
   report.extract = record_of(outcome.cracked.extraction);
+  report.extract->points = record.particles;
+  report.extract->point_spacing = outcome.own->samples.spacing;
+  report.extract->node_spacing = options.crack.node_spacing;
   write_crack_surface(outcome.cracked.extraction, options.out / "cracks.ply");
   return std::move(outcome.cracked.cut.fragments);
 }
@@ -283,6 +286,8 @@ StillResult fracture_mesh(const FractureOptions& options, Progress& progress) {
   double total = 0;
   {
     const Stopwatch watch(total);
+    if (options.cells == 0 && !(options.at && options.impulse > 0 && options.speed > 0))
+      throw Error(ErrorKind::usage, "a hit needs --at, and a positive --impulse and --speed");
     SceneBody body = body_of(options);
     body.material = find_material(options.material);
     if (options.cells == 0 && !body.material.breakable)
