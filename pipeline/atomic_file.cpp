@@ -62,4 +62,10 @@ void write_atomically(const fs::path& file, std::string_view bytes) {
   fail(file, reason);
 }
 
+void create_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw Error(ErrorKind::io, "cannot create the folder " + folder.string() + ": " + error.message());
+}
+
 }  // namespace sunder::pipeline

@@ -165,13 +165,9 @@ int extract_command(StillArguments& arguments, LogFormat log) {
 
 /// Options that `fracture` and `extract` share.
 void add_still_options(CLI::App& app, StillOptions& options, std::string& out) {
-  static const std::map<std::string, geometry::UpAxis> axes = {
-      {"x", geometry::UpAxis::x}, {"y", geometry::UpAxis::y}, {"z", geometry::UpAxis::z}};
   std::vector<std::string> looks = crack::detail_preset_names();
   app.add_option("--out", out, "Folder for the results (default: out/<name>)");
   app.add_option("--unit", options.load.metres_per_unit, "Metres per unit of the files")->check(CLI::PositiveNumber);
-  app.add_option("--up", options.load.up, "Up axis of the mesh: x, y or z")->transform(CLI::CheckedTransformer(axes));
-  app.add_option("--height", options.height, "Scale the mesh to this height [m]")->check(CLI::PositiveNumber);
   app.add_option("--seed", options.seed, "Of everything random");
   app.add_option("--detail", options.crack.detail, "Look of the crack faces")->check(CLI::IsMember(looks));
   app.add_option("--hairlines", options.crack.hairline_width, "Width of gaps that show partial cracks [m]")
@@ -183,6 +179,8 @@ void add_still_options(CLI::App& app, StillOptions& options, std::string& out) {
 }
 
 void add_fracture(CLI::App& app, StillArguments& arguments) {
+  static const std::map<std::string, geometry::UpAxis> axes = {
+      {"x", geometry::UpAxis::x}, {"y", geometry::UpAxis::y}, {"z", geometry::UpAxis::z}};
   FractureOptions& options = arguments.fracture;
   app.add_option("mesh", options.mesh, "Mesh file, or a name of assets/meshes.toml")->required();
   app.add_option("--at", arguments.at, "Where it is hit: x,y,z [m], the nearest point of the surface")
@@ -199,6 +197,8 @@ void add_fracture(CLI::App& app, StillArguments& arguments) {
       ->transform(CLI::CheckedTransformer(quality_words));
   app.add_option("--cells", options.cells, "No impact: shatter into so many Voronoi cells")
       ->check(CLI::Range(2, 100000));
+  app.add_option("--up", options.load.up, "Up axis of the mesh: x, y or z")->transform(CLI::CheckedTransformer(axes));
+  app.add_option("--height", options.height, "Scale the mesh to this height [m]")->check(CLI::PositiveNumber);
   add_still_options(app, options, arguments.out);
 }
 

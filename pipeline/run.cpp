@@ -22,12 +22,6 @@ double peak_memory_mb() {
   return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
-void create_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw Error(ErrorKind::io, "cannot create the folder " + folder.string() + ": " + error.message());
-}
-
 /// Frames of an earlier, longer run would play on after the end of this one.
 void remove_stale_frames(const std::filesystem::path& folder, const Sequence& sequence) {
   const int last = sequence.start_frame + static_cast<int>(sequence.frames.size()) - 1;

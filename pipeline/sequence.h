@@ -60,6 +60,9 @@ void write_obj_piece(const Piece& piece, const std::filesystem::path& file);
 /// Errors: ErrorKind::io.
 void write_glb(const Sequence& sequence, const std::filesystem::path& file);
 
+/// With its parents; one that is there is fine. Errors: ErrorKind::io.
+void create_folder(const std::filesystem::path& folder);
+
 /// Replaces `file` by `text` through a temporary file in the same folder (rename), so a reader or a full disk never
 /// sees half of it. Errors: ErrorKind::io with the system's reason; the temporary file is removed.
 void write_atomically(const std::filesystem::path& file, std::string_view bytes);

@@ -84,12 +84,6 @@ Sequence still_sequence(const SceneBody& body, const geometry::TriangleMesh& mes
   return sequence;
 }
 
-void create_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw Error(ErrorKind::io, "cannot create the folder " + folder.string() + ": " + error.message());
-}
-
 /// Pieces of an earlier call would be taken for those of this one.
 void remove_stale_pieces(const std::filesystem::path& folder) {
   for (const auto& entry : std::filesystem::directory_iterator(folder))

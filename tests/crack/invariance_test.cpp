@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
+#include <tbb/global_control.h>
 
 #include "tests/crack/shapes.h"
 
@@ -36,6 +37,20 @@ TEST(Invariance, TwiceIsTheSameToTheBit) {
     EXPECT_EQ(first.boundary.faces[i].loop, second.boundary.faces[i].loop);
     EXPECT_EQ(first.boundary.faces[i].inside, second.boundary.faces[i].inside);
     EXPECT_EQ(first.boundary.faces[i].outside, second.boundary.faces[i].outside);
+  }
+}
+
+TEST(Invariance, ThreadsDoNotMatter) {
+  const DamageField field = crossed_planes();
+  const Extraction all = run(field);
+  ASSERT_GT(all.sites, 1000);  // two threads get to do something
+  for (const std::size_t threads : {1, 2, 3}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const Extraction some = run(field);
+    EXPECT_EQ(some.region, all.region);
+    ASSERT_EQ(some.vertices, all.vertices);
+    ASSERT_EQ(some.faces.size(), all.faces.size());
+    for (std::size_t i = 0; i < all.faces.size(); ++i) ASSERT_EQ(some.faces[i].loop, all.faces[i].loop);
   }
 }
 
