@@ -227,19 +227,17 @@ Gaps gaps_of(const std::vector<Panel>& panels, const PanelsByEdge& by_edge, cons
 }
 
 /// Panels whose sides cross those of others or a crack between regions.
-std::set<int> crossing_panels(const Gaps& gaps, std::size_t first_new_vertex,
-                              const geometry::RegionBoundary& boundary) {
+std::set<int> crossing_panels(const Gaps& gaps, const geometry::RegionBoundary& boundary) {
   detail::FineMesh mesh = gaps.mesh;
-  std::vector<char> moved(mesh.vertices.size(), 1);
-  std::fill(moved.begin(), moved.begin() + static_cast<std::ptrdiff_t>(first_new_vertex), 0);
+  std::vector<char> moved(mesh.faces.size(), 1);
   const int first = static_cast<int>(mesh.vertices.size());
   mesh.vertices.insert(mesh.vertices.end(), boundary.vertices.begin(), boundary.vertices.end());
-  moved.resize(mesh.vertices.size(), 0);
   for (const geometry::RegionBoundary::Face& face : boundary.faces) {
     for (std::size_t i = 2; i < face.loop.size() && face.outside >= 0; ++i)
       mesh.faces.push_back({first + face.loop[0], first + face.loop[i - 1], first + face.loop[i]});
     mesh.source.resize(mesh.faces.size(), -1);
   }
+  moved.resize(mesh.faces.size(), 0);
   std::set<int> panels;
   for (const auto& [low, high] : detail::crossings(mesh, mesh.vertices, moved))
     panels.insert({mesh.source[static_cast<std::size_t>(low)], mesh.source[static_cast<std::size_t>(high)]});
@@ -256,7 +254,7 @@ Gaps valid_gaps(std::vector<Panel> panels, const std::vector<Vec3>& vertices, do
     std::set<int> bad = sheets.one_sided;
     if (bad.empty()) {
       Gaps gaps = gaps_of(panels, by_edge, sheets, vertices, width);
-      bad = crossing_panels(gaps, vertices.size(), boundary);
+      bad = crossing_panels(gaps, boundary);
       if (bad.empty()) return gaps;
     }
     panels = detail::without(panels, bad);

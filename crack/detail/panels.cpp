@@ -42,6 +42,11 @@ std::vector<Panel> without_short_edges(std::vector<Panel> panels, const std::vec
     return std::set<int>(panel.loop.begin(), panel.loop.end()).size() < std::max<std::size_t>(panel.loop.size(), 3);
   };
   std::erase_if(panels, repeats);
+  // Two panels between the same corners would part from each other at the same points.
+  std::set<std::set<int>> seen;
+  std::erase_if(panels, [&](const Panel& panel) {
+    return !seen.insert(std::set<int>(panel.loop.begin(), panel.loop.end())).second;
+  });
   return panels;
 }
 

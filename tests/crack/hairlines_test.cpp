@@ -191,16 +191,17 @@ TEST(Hairlines, NeverMakeAnInvalidFragment) {
         [&](const Vec3& x) { return std::abs(wave(x)) < 1.5 * spacing && x.x() < end; }, jitter, seed);
     const Extraction extraction = run(field);
     long shown_before = 0;
-    for (const double share : {2e-2, 5e-3, 1e-3, 1e-4}) {
+    for (const double share : {0.3, 0.1, 2e-2, 1e-3, 1e-4}) {  // the first leave little room
       SCOPED_TRACE(testing::Message() << "seed " << seed << ", width " << share << " spacings");
       const Shown shown(extraction, share * spacing);
       ASSERT_TRUE(shown.ok()) << shown.cut.detail;
       EXPECT_TRUE(shown.all_closed());
       EXPECT_NEAR(shown.kept + shown.gap, 1, volume_kept);
-      EXPECT_GT(shown.gap, 0);
+      EXPECT_EQ(shown.gap > 0, shown.lines.faces > 0);
       EXPECT_GE(shown.lines.faces, shown_before);  // narrower gaps have more room
       shown_before = shown.lines.faces;
     }
+    EXPECT_GT(shown_before, 0);
   }
 }
 
@@ -239,6 +240,19 @@ TEST(Panels, AThinPanelGoesAndItsNeighboursMeet) {
   const auto by_edge = detail::panels_by_edge(panels);
   EXPECT_EQ(by_edge.at({2, 3}), (std::vector<int>{0, 1}));
   EXPECT_EQ(detail::find_sheets(panels, by_edge).count, 1);
+}
+
+TEST(Panels, OfTwoPanelsBetweenTheSameCornersOneStays) {
+  std::vector<Vec3> vertices = strip_vertices(1);
+  vertices.emplace_back(0.5, 0.5, 0.1);
+  vertices.emplace_back(0.5, 0.5, 0.1 + 1e-3);
+  const std::vector<Panel> panels = {{{0, 2, 4}, 0}, {{2, 0, 5}, 0}, {{2, 3, 4}, 0}};
+  const std::vector<Panel> kept = detail::without_short_edges(panels, vertices, 1e-2);
+  EXPECT_EQ(kept.size(), 3u);  // nothing joins the tops
+  const std::vector<Panel> joined =
+      detail::without_short_edges({{{0, 2, 4}, 0}, {{2, 0, 5}, 0}, {{4, 2, 5}, 0}}, vertices, 1e-2);
+  ASSERT_EQ(joined.size(), 1u);
+  EXPECT_EQ(joined[0].loop, (std::vector<int>{0, 2, 4}));
 }
 
 TEST(Panels, ABranchGoesAndTheStraightCrackStays) {
@@ -281,6 +295,71 @@ Extraction band(int squares, int half_turns) {
     extraction.faces.push_back(face);
   }
   return extraction;
+}
+
+/// A square sheet of 4 x 4 panels across the middle of the cube, at this height.
+void add_square(Extraction& extraction, double height) {
+  const int first = static_cast<int>(extraction.vertices.size());
+  for (int i = 0; i <= 4; ++i)
+    for (int j = 0; j <= 4; ++j) extraction.vertices.emplace_back(0.3 + 0.1 * i, 0.3 + 0.1 * j, height);
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) {
+      const int a = first + 5 * i + j;
+      CrackFace face;
+      face.loop = {a, a + 5, a + 6, a + 1};
+      face.kind = FaceKind::partial;
+      extraction.faces.push_back(face);
+    }
+}
+
+TEST(Hairlines, SheetsNearerThanTheGapsAreWideLoseThePanelsThatWouldCross) {
+  constexpr double apart = 0.01;
+  Extraction extraction;
+  add_square(extraction, 0.5);
+  // Tilted: gaps 1.5 times as wide as the least distance cross on one side only.
+  add_square(extraction, 0.5 + apart);
+  for (std::size_t v = 25; v < 50; ++v) extraction.vertices[v].z() += 0.02 * (extraction.vertices[v].x() - 0.3);
+  const Shown narrow(extraction, apart / 2), wide(extraction, 1.5 * apart);
+  ASSERT_TRUE(narrow.ok()) << narrow.cut.detail;
+  EXPECT_EQ(narrow.lines.left_out, 0);
+  EXPECT_EQ(narrow.lines.gaps, 2);
+  ASSERT_TRUE(wide.ok()) << wide.cut.detail;
+  EXPECT_GT(wide.lines.left_out, 0);
+  EXPECT_GT(wide.lines.faces, 0);
+  EXPECT_TRUE(wide.all_closed());
+}
+
+TEST(Hairlines, APanelThatWouldReachThroughACrackBetweenRegionsIsLeftOut) {
+  // The cube in two halves at z = 0.5, and a sheet beside the crack.
+  constexpr double apart = 0.01;
+  Extraction extraction;
+  add_square(extraction, 0.5 + apart);
+  extraction.region_count = 2;
+  for (CrackFace& face : extraction.faces) face.region_a = face.region_b = 1;
+  geometry::RegionBoundary boundary{extraction.vertices, {}, 2};
+  const int first = static_cast<int>(boundary.vertices.size());
+  for (const double z : {-0.5, 0.5, 1.5})
+    for (const Vec3& corner : {Vec3(-0.5, -0.5, z), Vec3(1.5, -0.5, z), Vec3(1.5, 1.5, z), Vec3(-0.5, 1.5, z)})
+      boundary.vertices.push_back(corner);
+  const auto quad = [&](int a, int b, int c, int d, int inside, int outside) {
+    boundary.faces.push_back({{first + a, first + b, first + c, first + d}, inside, outside});
+  };
+  quad(4, 5, 6, 7, 0, 1);
+  quad(3, 2, 1, 0, 0, -1);
+  quad(8, 9, 10, 11, 1, -1);
+  for (int i = 0; i < 4; ++i) {
+    quad(i, (i + 1) % 4, 4 + (i + 1) % 4, 4 + i, 0, -1);
+    quad(4 + i, 4 + (i + 1) % 4, 8 + (i + 1) % 4, 8 + i, 1, -1);
+  }
+  extraction.boundary = boundary;
+  extraction.vertices = boundary.vertices;
+  const Shown narrow(extraction, apart), wide(extraction, 4 * apart);
+  ASSERT_TRUE(narrow.ok()) << narrow.cut.detail;
+  EXPECT_EQ(narrow.lines.left_out, 0);
+  EXPECT_EQ(narrow.lines.gaps, 1);
+  ASSERT_TRUE(wide.ok()) << wide.cut.detail;
+  EXPECT_GT(wide.lines.left_out, 0);
+  EXPECT_NEAR(wide.kept + wide.gap, 1, volume_kept);
 }
 
 TEST(Hairlines, ATwoSidedBandIsOneGap) {
