@@ -1,6 +1,7 @@
 #include "crack/hairlines.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -245,6 +246,43 @@ std::set<int> crossing_panels(const Gaps& gaps, const geometry::RegionBoundary& 
   return panels;
 }
 
+/// Does a line from x upwards pass through the triangle? Triangles that share an edge share none of such lines.
+bool below(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& x) {
+  int left = 0;  // edges across the line's plane, left of it
+  const std::array<const Vec3*, 4> corners = {&a, &b, &c, &a};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 &p = *corners[i], &q = *corners[i + 1];
+    if ((p.y() > x.y()) == (q.y() > x.y())) continue;
+    const Vec3 &low = p.y() < q.y() ? p : q, &high = p.y() < q.y() ? q : p;
+    left += low.x() + (x.y() - low.y()) / (high.y() - low.y()) * (high.x() - low.x()) < x.x();
+  }
+  const Vec3 normal = (b - a).cross(c - a);
+  return left == 1 && normal.dot(a - x) * normal.z() > 0;
+}
+
+bool lies_in(const geometry::RegionBoundary& boundary, int region, const Vec3& x) {
+  const auto at = [&](int v) -> const Vec3& { return boundary.vertices[static_cast<std::size_t>(v)]; };
+  bool inside = false;
+  for (const geometry::RegionBoundary::Face& face : boundary.faces)
+    if (face.inside == region || face.outside == region)
+      for (std::size_t i = 2; i < face.loop.size(); ++i)
+        inside ^= below(at(face.loop[0]), at(face.loop[i - 1]), at(face.loop[i]), x);
+  return inside;
+}
+
+/// Panels of sheets that surface detail moved a crack past, so that they lie in another region now.
+std::set<int> misplaced_panels(const Gaps& gaps, const geometry::RegionBoundary& boundary) {
+  std::set<int> panels;
+  std::vector<int> misplaced(static_cast<std::size_t>(gaps.count), -1);  // by gap, -1: not known
+  for (std::size_t t = 0; t < gaps.mesh.faces.size() && !boundary.faces.empty(); ++t) {
+    int& known = misplaced[static_cast<std::size_t>(gaps.gap[t])];
+    const Vec3& middle = gaps.mesh.vertices[static_cast<std::size_t>(gaps.mesh.faces[t][2])];
+    if (known < 0) known = lies_in(boundary, gaps.around[t], middle) ? 0 : 1;
+    if (known > 0) panels.insert(gaps.mesh.source[t]);
+  }
+  return panels;
+}
+
 /// Gaps without those panels that would make them invalid.
 Gaps valid_gaps(std::vector<Panel> panels, const std::vector<Vec3>& vertices, double width,
                 const geometry::RegionBoundary& boundary) {
@@ -255,6 +293,7 @@ Gaps valid_gaps(std::vector<Panel> panels, const std::vector<Vec3>& vertices, do
     if (bad.empty()) {
       Gaps gaps = gaps_of(panels, by_edge, sheets, vertices, width);
       bad = crossing_panels(gaps, boundary);
+      if (bad.empty()) bad = misplaced_panels(gaps, boundary);
       if (bad.empty()) return gaps;
     }
     panels = detail::without(panels, bad);

@@ -329,9 +329,8 @@ TEST(Hairlines, SheetsNearerThanTheGapsAreWideLoseThePanelsThatWouldCross) {
   EXPECT_TRUE(wide.all_closed());
 }
 
-TEST(Hairlines, APanelThatWouldReachThroughACrackBetweenRegionsIsLeftOut) {
-  // The cube in two halves at z = 0.5, and a sheet beside the crack.
-  constexpr double apart = 0.01;
+/// The cube in two parts at z = 0.5, and a sheet so far above the crack.
+Extraction parts_with_sheet(double apart) {
   Extraction extraction;
   add_square(extraction, 0.5 + apart);
   extraction.region_count = 2;
@@ -353,6 +352,27 @@ TEST(Hairlines, APanelThatWouldReachThroughACrackBetweenRegionsIsLeftOut) {
   }
   extraction.boundary = boundary;
   extraction.vertices = boundary.vertices;
+  return extraction;
+}
+
+TEST(Hairlines, ASheetThatDetailMovedTheCrackPastIsLeftOut) {
+  const Extraction extraction = parts_with_sheet(0.01);
+  for (const bool past : {false, true}) {
+    geometry::RegionBoundary moved = extraction.boundary;
+    for (Vec3& x : moved.vertices)
+      if (x.z() == 0.5) x.z() = past ? 0.53 : 0.48;
+    const Hairlines lines = add_hairlines(extraction, 1e-3, moved);
+    EXPECT_EQ(lines.gaps, past ? 0 : 1);
+    EXPECT_EQ(lines.left_out, past ? 16 : 0);
+    SilentProgress progress;
+    const geometry::CutResult cut = geometry::cut(body(), moved, {}, progress);
+    EXPECT_EQ(cut.status, geometry::CutStatus::ok) << cut.detail;
+  }
+}
+
+TEST(Hairlines, APanelThatWouldReachThroughACrackBetweenRegionsIsLeftOut) {
+  constexpr double apart = 0.01;
+  const Extraction extraction = parts_with_sheet(apart);
   const Shown narrow(extraction, apart), wide(extraction, 4 * apart);
   ASSERT_TRUE(narrow.ok()) << narrow.cut.detail;
   EXPECT_EQ(narrow.lines.left_out, 0);
