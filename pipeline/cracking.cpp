@@ -48,6 +48,7 @@ class Cracking {
     const Stopwatch watch(result_.extract_seconds);
     first_gap_ = result_.boundary.region_count;
     result_.damage_time.clear();
+    result_.detail_vertices = result_.detail_limited = result_.hairline_faces = 0;
     if (!choice_.detail.empty() && result_.boundary.region_count > 1) add_detail(times, attempt);
     if (choice_.hairline_width > 0) add_hairlines(attempt);
     return result_.boundary.region_count > 1;

@@ -456,11 +456,16 @@ TEST(Cracking, ABodyThatIsNoSolidFallsBackToVoxelsAndSaysSo) {
   for (const auto& [a, b, c] : other.faces) body.faces.push_back({a + 8, b + 8, c + 8});
   CrackChoice choice;
   choice.voxel_size = 0.05;
+  choice.hairline_width = 1e-3;
+  const Inside with_branch = [](const Vec3& x) {
+    return in_slab(x) || (std::abs(x.x()) < 0.08 && x.y() > 0 && x.y() < 0.3);
+  };
   SilentProgress progress;
-  const Cracked result = crack_and_cut(body, field_of(in_slab), choice, 1, progress);
+  const Cracked result = crack_and_cut(body, field_of(with_branch), choice, 1, progress);
   EXPECT_EQ(result.fallbacks.at("cut_retried"), 4);
   EXPECT_EQ(result.fallbacks.at("cut_level_set"), 1);
   EXPECT_GE(result.troubles.size(), 4u);
+  EXPECT_EQ(result.hairline_faces, 0);  // dropped
   for (const geometry::Fragment& fragment : result.cut.fragments)
     EXPECT_TRUE(geometry::is_closed_two_manifold(fragment.mesh));
 }
