@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include <tbb/parallel_sort.h>
+
 namespace sunder::crack::detail {
 
 namespace {
@@ -17,7 +19,7 @@ std::vector<DirectedEdge> directed_edges(const geometry::RegionBoundary& boundar
       edges.push_back({face.inside, from, to});
       if (face.outside >= 0) edges.push_back({face.outside, to, from});
     }
-  std::sort(edges.begin(), edges.end());
+  tbb::parallel_sort(edges.begin(), edges.end());
   return edges;
 }
 

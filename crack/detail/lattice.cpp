@@ -3,6 +3,10 @@
 #include <cmath>
 #include <string>
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
 namespace sunder::crack::detail {
 
 namespace {
@@ -81,16 +85,17 @@ struct Sums {
   std::vector<double> weight, damage, timed, time;  // the last two: empty unless there are times
 };
 
-Sums sums(const Lattice& lattice, const DamageField& field, double crack_damage) {
-  Sums result(lattice.positions());
-  if (!field.damage_time.empty()) {
-    result.timed.assign(result.weight.size(), 0.0);
-    result.time = result.timed;
-  }
+/// What the points give to the positions from `first` to `last`.
+void add_points(const Lattice& lattice, const DamageField& field, double crack_damage, int first, int last,
+                Sums& result) {
+  const int cell_span = lattice.step(1, 1, 1);
   for (std::size_t p = 0; p < field.points.size(); ++p) {
+    const auto [corner, rest] = lattice.cell_of(field.points[p]);
+    if (corner + cell_span < first || corner >= last) continue;
     const double crack = field.damage[p] >= crack_damage;
     const bool timed = !field.damage_time.empty() && field.damage_time[p] >= 0;
-    lattice.for_each_corner(field.points[p], [&](int position, double w) {
+    lattice.for_each_corner(corner, rest, [&](int position, double w) {
+      if (position < first || position >= last) return;
       const std::size_t at = static_cast<std::size_t>(position);
       result.weight[at] += w;
       result.damage[at] += w * crack;
@@ -99,7 +104,31 @@ Sums sums(const Lattice& lattice, const DamageField& field, double crack_damage)
       result.time[at] += w * field.damage_time[p];
     });
   }
+}
+
+/// Every thread reads all points and has positions of its own, which get their points in order, however many threads
+/// there are.
+Sums sums(const Lattice& lattice, const DamageField& field, double crack_damage) {
+  Sums result(lattice.positions());
+  if (!field.damage_time.empty()) {
+    result.timed.assign(result.weight.size(), 0.0);
+    result.time = result.timed;
+  }
+  const int shares = tbb::this_task_arena::max_concurrency();
+  const auto first = [&](int share) {
+    return static_cast<int>(static_cast<long>(lattice.positions()) * share / shares);
+  };
+  tbb::parallel_for(
+      0, shares, [&](int share) { add_points(lattice, field, crack_damage, first(share), first(share + 1), result); });
   return result;
+}
+
+std::vector<int> nearest_positions(const Lattice& lattice, const std::vector<Vec3>& points) {
+  std::vector<int> nearest(points.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size()), [&](const auto& range) {
+    for (std::size_t p = range.begin(); p != range.end(); ++p) nearest[p] = lattice.nearest(points[p]);
+  });
+  return nearest;
 }
 
 /// Where displaced points leave a gap, a node between others of the body is one of them.
@@ -126,12 +155,8 @@ Raster rasterise(const DamageField& field, const Box& domain, double spacing, do
   std::vector<char> in_body(sum.weight.size(), 0);
   const double least = body_share * std::pow(spacing / field.spacing, 3);
   for (std::size_t at = 0; at < in_body.size(); ++at) in_body[at] = sum.weight[at] > least;
-  std::vector<int> nearest;
-  nearest.reserve(field.points.size());
-  for (const Vec3& x : field.points) {
-    nearest.push_back(lattice.nearest(x));
-    in_body[static_cast<std::size_t>(nearest.back())] = 1;
-  }
+  std::vector<int> nearest = nearest_positions(lattice, field.points);
+  for (const int position : nearest) in_body[static_cast<std::size_t>(position)] = 1;
   fill_holes(lattice, sum.weight, in_body);
   lattice.set_nodes(in_body);
   for (int& position : nearest) position = lattice.node_at(position);

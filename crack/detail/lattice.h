@@ -54,6 +54,11 @@ class Lattice {
   template <typename Visit>
   void for_each_corner(const Vec3& x, Visit&& visit) const {
     const auto [corner, r] = cell_of(x);
+    for_each_corner(corner, r, visit);
+  }
+  /// The same for the place `r` in the cell whose lower corner is known.
+  template <typename Visit>
+  void for_each_corner(int corner, const Vec3& r, Visit&& visit) const {
     for (int k = 0; k < 2; ++k)
       for (int j = 0; j < 2; ++j)
         for (int i = 0; i < 2; ++i)
