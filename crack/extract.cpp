@@ -167,11 +167,12 @@ Extraction extract(const DamageField& field, const Box& domain, const Settings& 
   check(field, domain, settings);
   Extraction result;
   result.region.assign(field.points.size(), 0);
+  result.node_spacing = settings.node_spacing > 0 ? settings.node_spacing : usual_spacing * field.spacing;
   result.damaged_share = damaged_share(field, settings.crack_damage);
   if (result.damaged_share == 0) return result;
 
   progress.checkpoint("extract", 0.1);
-  const double spacing = settings.node_spacing > 0 ? settings.node_spacing : usual_spacing * field.spacing;
+  const double spacing = result.node_spacing;
   const Raster raster = rasterise(field, domain, spacing, settings.crack_damage);
   if (earlier) check(*earlier, field, raster.lattice);
   const Crushed crushed = find_crushed(raster, settings.node_damage);

@@ -62,6 +62,7 @@ struct Extraction {
   std::vector<Vec3> vertices;         ///< of `faces`; those of `boundary` are the same
   std::vector<CrackFace> faces;       ///< for looking and for later solves; face i is boundary.faces[i] unless partial
   std::vector<Anchor> anchors;        ///< by which a later extraction of the same body keeps these faces
+  double node_spacing = 0;            ///< that was used [m]
   long sites = 0;                     ///< Voronoi sites
   double damaged_share = 0;           ///< damaged points / points
   double lump_share = 0;              ///< crack nodes farther than 1.5 cell sizes from every sound one / nodes

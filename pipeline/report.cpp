@@ -135,6 +135,7 @@ ExtractRecord record_of(const crack::Extraction& extraction) {
   ExtractRecord record;
   record.points = static_cast<long>(extraction.region.size());
   record.sites = extraction.sites;
+  record.node_spacing = extraction.node_spacing;
   record.pieces = extraction.region_count;
   record.effective_count = extraction.effective_count;
   record.damaged_share = extraction.damaged_share;

@@ -220,7 +220,6 @@ std::vector<geometry::Fragment> hit(const FractureOptions& options, const geomet
   report.extract = record_of(outcome.cracked.extraction);
   report.extract->points = record.particles;
   report.extract->point_spacing = outcome.own->samples.spacing;
-  report.extract->node_spacing = options.crack.node_spacing;
   write_crack_surface(outcome.cracked.extraction, options.out / "cracks.ply");
   return std::move(outcome.cracked.cut.fragments);
 }
@@ -323,7 +322,6 @@ StillResult extract_points(const ExtractOptions& options, Progress& progress) {
                                          : crack_and_cut(mesh, field, options.crack, options.seed, progress);
     result.report.extract = record_of(cracked.extraction);
     result.report.extract->point_spacing = field.spacing;
-    result.report.extract->node_spacing = options.crack.node_spacing;
     result.report.seconds.extract = cracked.extract_seconds;
     result.report.seconds.cut = cracked.cut_seconds;
     result.report.cut_volume_error = cracked.cut.volume_error;

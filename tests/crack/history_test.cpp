@@ -90,6 +90,12 @@ TEST(History, FacesKnowWhenDamageReachedThem) {
   EXPECT_GT(known, 300);
 }
 
+TEST(History, TheSpacingThatWasUsedIsSaid) {
+  EXPECT_EQ(run(grown_to(0.5)).node_spacing, h);  // what `run` asks for
+  SilentProgress progress;
+  EXPECT_NEAR(extract(grown_to(0.5), unit_cube(), {}, progress).node_spacing, 0.8 * h, 1e-12);
+}
+
 TEST(History, AnchorsOfAnotherBodyAreRefused) {
   SilentProgress progress;
   Extraction result = run(grown_to(0.5));
