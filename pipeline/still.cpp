@@ -133,7 +133,7 @@ struct SurfacePoint {
   double distance = std::numeric_limits<double>::infinity();
 };
 
-/// Barycentric coordinates of the point of a triangle nearest to `x` (Ericson 2005, section 5.1.5).
+/// The point of a triangle nearest to `x`.
 Vec3 nearest_in(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& x) {
   const auto on_edge = [&](const Vec3& p, const Vec3& q) -> Vec3 {
     return p + std::clamp((x - p).dot(q - p) / (q - p).squaredNorm(), 0.0, 1.0) * (q - p);

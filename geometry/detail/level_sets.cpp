@@ -1,49 +1,15 @@
 #include "geometry/detail/level_sets.h"
 
-#include <mutex>
-
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>
-#include <openvdb/tools/VolumeToMesh.h>
+
+#include "geometry/detail/vdb_mesh.h"
 
 namespace sunder::geometry::detail {
 namespace {
 
-constexpr float kBand = 3;  // half width of the narrow band in voxels
-
-/// A mesh in voxels, in the form that OpenVDB reads.
-struct VoxelMesh {
-  const TriangleMesh& mesh;
-  const Lattice& lattice;
-
-  std::size_t polygonCount() const { return mesh.faces.size(); }
-  std::size_t pointCount() const { return mesh.vertices.size(); }
-  std::size_t vertexCount(std::size_t) const { return 3; }
-  void getIndexSpacePoint(std::size_t face, std::size_t corner, openvdb::Vec3d& point) const {
-    const Vec3 x = (mesh.vertices[mesh.faces[face][corner]] - lattice.origin) / lattice.spacing;
-    point = {x.x(), x.y(), x.z()};
-  }
-};
-
 openvdb::Coord coord(const Lattice& lattice, int index) {
   return {index % lattice.count[0], index / lattice.count[0] % lattice.count[1],
           index / lattice.count[0] / lattice.count[1]};
-}
-
-TriangleMesh surface_of(const openvdb::FloatGrid& grid, const Lattice& lattice) {
-  std::vector<openvdb::Vec3s> points;
-  std::vector<openvdb::Vec4I> quads;
-  openvdb::tools::volumeToMesh(grid, points, quads);
-  TriangleMesh result;
-  for (const auto& x : points) result.vertices.push_back(lattice.origin + lattice.spacing * Vec3(x.x(), x.y(), x.z()));
-  for (const auto& quad : quads) {
-    const int a = static_cast<int>(quad[0]), b = static_cast<int>(quad[1]);
-    const int c = static_cast<int>(quad[2]), d = static_cast<int>(quad[3]);
-    // OpenVDB turns its polygons clockwise.
-    result.faces.push_back({a, c, b});
-    result.faces.push_back({a, d, c});
-  }
-  return result;
 }
 
 }  // namespace
@@ -55,11 +21,10 @@ struct BodyLevelSet::Grids {
 
 BodyLevelSet::BodyLevelSet(const TriangleMesh& body, const Lattice& lattice)
     : lattice_(lattice), grids_(std::make_unique<Grids>()) {
-  static std::once_flag once;
-  std::call_once(once, [] { openvdb::initialize(); });
+  initialize_openvdb();
   const auto unit = openvdb::math::Transform::createLinearTransform(1.0);
-  grids_->distance = openvdb::tools::meshToVolume<openvdb::FloatGrid>(VoxelMesh{body, lattice_}, *unit, kBand, kBand, 0,
-                                                                      &grids_->face);
+  grids_->distance = openvdb::tools::meshToVolume<openvdb::FloatGrid>(
+      VoxelMesh{body, lattice_.origin, lattice_.spacing}, *unit, half_band, half_band, 0, &grids_->face);
 }
 
 BodyLevelSet::~BodyLevelSet() = default;
@@ -67,19 +32,20 @@ BodyLevelSet::~BodyLevelSet() = default;
 std::vector<char> BodyLevelSet::near_or_inside() const {
   std::vector<char> result(lattice_.size());
   auto distance = grids_->distance->getConstAccessor();
-  for (int i = 0; i < lattice_.size(); ++i) result[i] = distance.getValue(coord(lattice_, i)) < kBand;
+  for (int i = 0; i < lattice_.size(); ++i) result[i] = distance.getValue(coord(lattice_, i)) < half_band;
   return result;
 }
 
 TriangleMesh BodyLevelSet::part_inside(const std::vector<int>& region_of_point, int region,
                                        const TriangleMesh& walls) const {
   const auto unit = openvdb::math::Transform::createLinearTransform(1.0);
-  openvdb::FloatGrid::Ptr from_walls = openvdb::FloatGrid::create(kBand);
+  openvdb::FloatGrid::Ptr from_walls = openvdb::FloatGrid::create(half_band);
   if (!walls.faces.empty()) {
-    from_walls = openvdb::tools::meshToVolume<openvdb::FloatGrid>(VoxelMesh{walls, lattice_}, *unit, kBand, kBand,
-                                                                  openvdb::tools::UNSIGNED_DISTANCE_FIELD);
+    from_walls =
+        openvdb::tools::meshToVolume<openvdb::FloatGrid>(VoxelMesh{walls, lattice_.origin, lattice_.spacing}, *unit,
+                                                         half_band, half_band, openvdb::tools::UNSIGNED_DISTANCE_FIELD);
   }
-  const auto part = openvdb::FloatGrid::create(kBand);
+  const auto part = openvdb::FloatGrid::create(half_band);
   part->setGridClass(openvdb::GRID_LEVEL_SET);  // decides which way faces turn
   auto body = grids_->distance->getConstAccessor();
   auto wall = from_walls->getConstAccessor();
@@ -87,11 +53,11 @@ TriangleMesh BodyLevelSet::part_inside(const std::vector<int>& region_of_point, 
   for (int i = 0; i < lattice_.size(); ++i) {
     if (region_of_point[i] < 0) continue;
     const openvdb::Coord at = coord(lattice_, i);
-    const float to_wall = std::min(wall.getValue(at), kBand);
+    const float to_wall = std::min(wall.getValue(at), half_band);
     const float value = std::max(body.getValue(at), region_of_point[i] == region ? -to_wall : to_wall);
-    if (value < kBand) out.setValue(at, value);
+    if (value < half_band) out.setValue(at, value);
   }
-  return surface_of(*part, lattice_);
+  return surface_of(*part, lattice_.origin, lattice_.spacing);
 }
 
 int BodyLevelSet::face_within_a_voxel(const Vec3& point) const {

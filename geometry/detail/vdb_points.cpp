@@ -8,6 +8,7 @@
 #include <openvdb/points/PointDataGrid.h>
 
 #include "core/error.h"
+#include "geometry/detail/vdb_mesh.h"
 
 namespace sunder::geometry::detail {
 
@@ -23,7 +24,7 @@ using Leaf = openvdb::points::PointDataTree::LeafNodeType;
 Vec3 to_vec3(const openvdb::Vec3d& x) { return {x.x(), x.y(), x.z()}; }
 
 openvdb::GridPtrVec read_grids(const std::filesystem::path& file) {
-  openvdb::initialize();
+  initialize_openvdb();
   try {
     openvdb::io::File in(file.string());
     in.open();
