@@ -24,23 +24,15 @@ if(CCACHE)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
 endif()
 
-# Where the sources lie is told to those files alone that ask for it: all others compile to the same objects in any
-# checkout, so a compiler cache serves them all.
-function(sunder_tell_source_dir)
-  foreach(source ${ARGN})
-    file(STRINGS ${source} mentions REGEX SUNDER_SOURCE_DIR)
-    if(mentions)
-      set_source_files_properties(${source} PROPERTIES COMPILE_DEFINITIONS SUNDER_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-    endif()
-  endforeach()
-endfunction()
+# For targets that look for files of the checkout. Modules do not: they compile to the same objects in any checkout, so a
+# compiler cache serves them all.
+set(SUNDER_SOURCE_DEFINITION SUNDER_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
 
 # sunder_module(name USES public-dependencies HIDES third-party-inside-cpp-files)
 function(sunder_module name)
   cmake_parse_arguments(ARG "" "" "USES;HIDES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${name}/*.cpp ${PROJECT_SOURCE_DIR}/${name}/detail/*.cpp)
   list(FILTER sources EXCLUDE REGEX "/main\\.cpp$")
-  sunder_tell_source_dir(${sources})
   add_library(sunder_${name} STATIC ${sources})
   target_link_libraries(sunder_${name} PUBLIC sunder_flags ${ARG_USES} PRIVATE ${ARG_HIDES})
 endfunction()
@@ -52,8 +44,8 @@ function(sunder_test name)
   if(NOT sources)
     return()
   endif()
-  sunder_tell_source_dir(${sources})
   add_executable(${name}_tests ${sources})
+  target_compile_definitions(${name}_tests PRIVATE ${SUNDER_SOURCE_DEFINITION})
   target_link_libraries(${name}_tests PRIVATE ${ARGN} GTest::gtest_main rapidcheck rapidcheck_gtest)
   gtest_discover_tests(${name}_tests TEST_PREFIX ${name}. DISCOVERY_MODE PRE_TEST TEST_FILTER -*Slow*
                        TEST_LIST ${name}_fast PROPERTIES TIMEOUT 300)

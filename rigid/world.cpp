@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <optional>
 #include <string>
 
 #include "core/error.h"
 #include "rigid/detail/dynamics.h"
 #include "rigid/detail/encounters.h"
+#include "rigid/detail/sleep.h"
 
 namespace sunder::rigid {
 
@@ -18,38 +18,41 @@ using detail::Body;
 // it that is meant for bodies of a metre (margins, breaking and sleeping thresholds, widened boxes, restitution
 // threshold) is replaced by a share of the body's own size in detail/.
 struct World::Impl {
+  struct Member {
+    BodySetup setup;
+    std::unique_ptr<Body> body;
+  };
+
+  explicit Impl(const WorldSettings& chosen)
+      : settings(chosen),
+        ground(chosen.has_ground ? detail::make_ground(chosen) : nullptr),
+        history{{}, chosen.time_step},
+        dynamics(chosen.gravity) {}
+
   WorldSettings settings;
   std::unique_ptr<Body> ground;
-  std::map<BodyId, std::unique_ptr<Body>> bodies;
-  detail::Tolerances tolerances;
-  detail::ContactLog log;
-  std::optional<detail::Simulation> simulation;
+  std::map<BodyId, Member> members;
+  detail::History history;
+  detail::Dynamics dynamics;
   BodyId next_id = 0;
   double time = 0;
 
   Body& at(BodyId id) const;
-  void restart(double last_step);
-  std::vector<const Body*> list() const;
+  std::vector<Body*> list() const;
+  void add(BodyId id, const BodySetup& setup) {
+    members.emplace(id, Member{setup, detail::make_body(id, setup, settings.gravity)});
+  }
 };
 
 Body& World::Impl::at(BodyId id) const {
-  const auto found = bodies.find(id);
-  if (found == bodies.end()) throw Error(ErrorKind::internal, "rigid world has no body " + std::to_string(id));
-  return *found->second;
+  const auto found = members.find(id);
+  if (found == members.end()) throw Error(ErrorKind::internal, "rigid world has no body " + std::to_string(id));
+  return *found->second.body;
 }
 
-// A new simulation with the same bodies in the order of their ids: forgets contacts and the order in which things
-// happened.
-void World::Impl::restart(double last_step) {
-  simulation.reset();
-  simulation.emplace(settings, last_step, tolerances, log);
-  if (ground) simulation->insert(*ground);
-  for (const auto& [id, body] : bodies) simulation->insert(*body);
-}
-
-std::vector<const Body*> World::Impl::list() const {
-  std::vector<const Body*> result;
-  for (const auto& [id, body] : bodies) result.push_back(body.get());
+std::vector<Body*> World::Impl::list() const {
+  std::vector<Body*> result;
+  for (const auto& [id, member] : members) result.push_back(member.body.get());
   return result;
 }
 
@@ -75,12 +78,12 @@ void check_finite(const Body& body, double time) {
 }
 
 // What is not tolerated of the overlaps of two bodies.
-double excess(const Body& a, const Body& b, const detail::Tolerances& tolerances) {
+double excess(const Body& a, const Body& b, const std::vector<ContactMemory>& contacts) {
   if (a.newborn || b.newborn) return 0;
   double depth = 0;
   for (const detail::PartOverlap& part : detail::part_overlaps(a, b)) {
-    const auto tolerated = tolerances.find({a.id, b.id, part.part_a, part.part_b});
-    depth = std::max(depth, part.depth - (tolerated == tolerances.end() ? 0 : tolerated->second));
+    const ContactMemory* known = detail::find(contacts, {a.id, b.id, part.part_a, part.part_b});
+    depth = std::max(depth, part.depth - (known ? known->tolerated : 0));
   }
   return depth;
 }
@@ -90,11 +93,15 @@ constexpr double overlap_noise = 1e-9;
 
 }  // namespace
 
-World::World(const WorldSettings& settings) : impl_(std::make_unique<Impl>()) {
+World::World(const WorldSettings& settings) {
   check(settings);
-  impl_->settings = settings;
-  if (settings.has_ground) impl_->ground = detail::make_ground(settings);
-  impl_->restart(settings.time_step);
+  impl_ = std::make_unique<Impl>(settings);
+}
+
+World::World(const WorldSettings& settings, const State& state) : World(settings) {
+  for (std::size_t i = 0; i < state.setups.size(); ++i) impl_->add(state.snapshot.ids[i], state.setups[i]);
+  impl_->next_id = state.next_id;
+  restore(state.snapshot);
 }
 
 World::~World() = default;
@@ -102,28 +109,39 @@ World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 
 BodyId World::add(const BodySetup& setup) {
-  const BodyId id = impl_->next_id;
-  auto body = detail::make_body(id, setup, impl_->settings.gravity);
-  impl_->simulation->insert(*body);
-  impl_->bodies.emplace(id, std::move(body));
-  ++impl_->next_id;
-  return id;
+  impl_->add(impl_->next_id, setup);
+  return impl_->next_id++;
 }
 
 void World::remove(BodyId id) {
-  impl_->simulation->erase(impl_->at(id));
-  impl_->bodies.erase(id);
-  std::erase_if(impl_->tolerances,
-                [&](const auto& entry) { return entry.first.body_a == id || entry.first.body_b == id; });
+  impl_->at(id);
+  detail::wake(detail::touching(id, impl_->history.contacts), impl_->history.contacts, impl_->list());
+  impl_->members.erase(id);
+  std::erase_if(impl_->history.contacts,
+                [&](const ContactMemory& m) { return m.pair.body_a == id || m.pair.body_b == id; });
 }
 
 BodyState World::state(BodyId id) const { return detail::state_of(impl_->at(id)); }
 
 void World::set_state(BodyId id, const BodyState& state) {
   Body& body = impl_->at(id);
+  detail::wake(detail::touching(id, impl_->history.contacts), impl_->history.contacts, impl_->list());
+  if (body.is_dynamic() && body.asleep) detail::set_asleep(body, false);
   detail::place(body, state);
-  if (body.is_dynamic()) body.object->activate(true);
-  impl_->simulation->wake_neighbours(body);
+}
+
+void World::drive(BodyId id, const Pose& pose) {
+  Body& body = impl_->at(id);
+  if (body.motion != Motion::kinematic)
+    throw Error(ErrorKind::internal, "rigid body " + std::to_string(id) + " is not kinematic and cannot be driven");
+  BodyState state = detail::state_of(body);
+  const Eigen::AngleAxisd turn(pose.orientation * state.pose.orientation.conjugate());
+  state.twist.linear = (pose.position - state.pose.position) / impl_->settings.time_step;
+  state.twist.angular = turn.axis() * (turn.angle() / impl_->settings.time_step);
+  const bool starts = body.asleep;
+  detail::place(body, state);
+  if (starts && !body.asleep)
+    detail::wake(detail::touching(id, impl_->history.contacts), impl_->history.contacts, impl_->list());
 }
 
 double World::mass(BodyId id) const { return impl_->at(id).mass; }
@@ -132,7 +150,7 @@ Mat3 World::world_inertia(BodyId id) const { return detail::world_inertia(impl_-
 
 std::vector<BodyId> World::bodies() const {
   std::vector<BodyId> ids;
-  for (const auto& [id, body] : impl_->bodies) ids.push_back(id);
+  for (const auto& [id, member] : impl_->members) ids.push_back(id);
   return ids;
 }
 
@@ -140,57 +158,61 @@ double World::time() const { return impl_->time; }
 
 std::vector<Impact> World::step() {
   const WorldSettings& settings = impl_->settings;
-  const int pieces = detail::sub_steps(impl_->list(), impl_->ground.get(), settings.gravity, settings.time_step);
-  impl_->log.samples.clear();
-  for (int i = 0; i < pieces; ++i) {
-    impl_->log.sub_step = i;
-    impl_->simulation->advance(settings.time_step / pieces);
-  }
+  const std::vector<Body*> bodies = impl_->list();
+  const int pieces = detail::sub_steps(bodies, impl_->ground.get(), settings.gravity, settings.time_step);
+  detail::ContactLog log;
+  for (log.sub_step = 0; log.sub_step < pieces; ++log.sub_step)
+    impl_->dynamics.advance(bodies, impl_->ground.get(), settings.time_step / pieces, impl_->history, log);
   impl_->time += settings.time_step;
-  for (const auto& [id, body] : impl_->bodies) check_finite(*body, impl_->time);
-  return detail::impacts(impl_->log.samples, settings.resting_speed);
+  for (const Body* body : bodies) check_finite(*body, impl_->time);
+  return detail::impacts(std::move(log.samples), settings.resting_speed);
 }
 
 World::Snapshot World::snapshot() const {
   Snapshot snapshot;
   snapshot.time = impl_->time;
-  snapshot.last_step = impl_->simulation->last_step();
-  for (const auto& [id, body] : impl_->bodies) {
-    const btRigidBody& object = *body->object;
-    snapshot.ids.push_back(id);
+  snapshot.last_step = impl_->history.last_step;
+  for (const Body* body : impl_->list()) {
+    snapshot.ids.push_back(body->id);
     snapshot.states.push_back(detail::state_of(*body));
-    snapshot.rests.push_back({object.getActivationState(), object.getDeactivationTime(), body->newborn});
+    snapshot.rests.push_back({body->asleep, body->quiet_time, body->newborn});
   }
-  for (const auto& [pair, depth] : impl_->tolerances)
-    snapshot.tolerances.push_back({pair.body_a, pair.body_b, pair.part_a, pair.part_b, depth});
+  snapshot.contacts = impl_->history.contacts;
   return snapshot;
 }
 
 void World::restore(const Snapshot& snapshot) {
   impl_->time = snapshot.time;
-  impl_->tolerances.clear();
-  for (const Snapshot::Tolerance& t : snapshot.tolerances)
-    impl_->tolerances[{t.body_a, t.body_b, t.part_a, t.part_b}] = t.depth;
+  impl_->history = {snapshot.contacts, snapshot.last_step};
+  std::erase_if(impl_->history.contacts, [&](const ContactMemory& m) {
+    return !impl_->members.contains(m.pair.body_a) ||
+           (m.pair.body_b != ground_id && !impl_->members.contains(m.pair.body_b));
+  });
   for (std::size_t i = 0; i < snapshot.ids.size(); ++i) {
-    const auto found = impl_->bodies.find(snapshot.ids[i]);
-    if (found == impl_->bodies.end()) continue;
-    Body& body = *found->second;
+    const auto found = impl_->members.find(snapshot.ids[i]);
+    if (found == impl_->members.end()) continue;
+    Body& body = *found->second.body;
+    if (body.is_dynamic()) detail::set_asleep(body, snapshot.rests[i].asleep);
     detail::place(body, snapshot.states[i]);
-    body.object->forceActivationState(snapshot.rests[i].activation);
-    body.object->setDeactivationTime(snapshot.rests[i].quiet_time);
+    body.quiet_time = snapshot.rests[i].quiet_time;
     body.newborn = snapshot.rests[i].newborn;
   }
-  impl_->restart(snapshot.last_step);
+}
+
+World::State World::state() const {
+  State state{{}, snapshot(), impl_->next_id};
+  for (const auto& [id, member] : impl_->members) state.setups.push_back(member.setup);
+  return state;
 }
 
 std::vector<World::Overlap> World::overlaps() const {
-  const std::vector<const Body*> bodies = impl_->list();
+  const std::vector<Body*> bodies = impl_->list();
   std::vector<Box> boxes;
   for (const Body* body : bodies) boxes.push_back(detail::bounds(*body));
   std::vector<Overlap> result;
   const auto note = [&](const Body& a, const Body& b) {
     if (!a.is_dynamic() && !b.is_dynamic()) return;
-    const double depth = excess(a, b, impl_->tolerances);
+    const double depth = excess(a, b, impl_->history.contacts);
     if (depth > overlap_noise * std::min(a.radius, b.radius)) result.push_back({a.id, b.id, depth});
   };
   for (const auto& [i, j] : detail::touching(boxes)) note(*bodies[i], *bodies[j]);

@@ -36,6 +36,24 @@ struct BodyState {
   Twist twist;
 };
 
+/// Two bodies and the parts (hulls) of theirs that touch; the ground is always the second.
+struct PartPair {
+  BodyId body_a = 0, body_b = 0;
+  int part_a = 0, part_b = 0;
+  auto operator<=>(const PartPair&) const = default;
+};
+
+/// What one step leaves to the next of two parts that touch or nearly so.
+struct ContactMemory {
+  struct Point {
+    Vec3 on_a = Vec3::Zero();  ///< in the principal axes of the first body [m]
+    double impulse = 0;        ///< first guess for the next step [N s]
+  };
+  PartPair pair;
+  double tolerated = 0;  ///< overlap that contact does not push apart [m]
+  std::vector<Point> points;
+};
+
 /// One contact patch of one step: all contact points of a pair of bodies that lie together.
 struct Impact {
   BodyId body_a = 0, body_b = 0;  ///< body_b may be ground_id
@@ -58,7 +76,9 @@ struct WorldSettings {
   double resting_speed = 0.1;
 };
 
-/// Owns all bodies. Steps are deterministic: fixed step, fixed insertion order, one thread.
+/// Owns all bodies. Steps are deterministic: fixed step, contacts in the order of the bodies' ids, one solver thread;
+/// contacts are searched on all threads, with results that do not depend on their number. There is no hidden state: see
+/// Snapshot.
 class World {
  public:
   explicit World(const WorldSettings& settings);
@@ -71,6 +91,9 @@ class World {
   void remove(BodyId id);
   BodyState state(BodyId id) const;
   void set_state(BodyId id, const BodyState& state);
+  /// Gives a kinematic body the motion that brings it to `pose` by the end of the next step. Errors:
+  /// ErrorKind::internal for a body that is not kinematic.
+  void drive(BodyId id, const Pose& pose);
   double mass(BodyId id) const;
   Mat3 world_inertia(BodyId id) const;
   /// In order of their ids.
@@ -80,29 +103,34 @@ class World {
   /// Advances by one time step and returns its impacts, ordered by ids and then by point.
   std::vector<Impact> step();
 
-  /// What `restore` needs to take steps back: poses, velocities, sleep, tolerated overlaps and the time. A body that
-  /// was added or removed in between stays as it is; contact caches are dropped, so a repeated step starts from cold
-  /// contacts and gives the same bits each time it is repeated.
+  /// Where everything is, and all that the past leaves to the next step: poses, velocities, rest, contacts, the time.
   struct Snapshot {
     struct Rest {
-      int activation = 0;
+      bool asleep = false;
       double quiet_time = 0;  ///< for how long it has been slow [s]
       bool newborn = false;   ///< has not taken its first step
-    };
-    struct Tolerance {
-      BodyId body_a = 0, body_b = 0;
-      int part_a = 0, part_b = 0;
-      double depth = 0;  ///< [m]
     };
     double time = 0;
     double last_step = 0;  ///< length of the last sub-step [s]
     std::vector<BodyId> ids;
     std::vector<BodyState> states;
     std::vector<Rest> rests;
-    std::vector<Tolerance> tolerances;
+    std::vector<ContactMemory> contacts;
   };
   Snapshot snapshot() const;
+  /// Takes steps back. A body that was added or removed in between stays as it is. The step that follows is the one
+  /// that followed the snapshot, bit for bit from one repetition to the next. An orientation may differ by its last
+  /// digit from what it was.
   void restore(const Snapshot& snapshot);
+
+  /// The whole world as a value. `World(settings, state)` goes on like `world.restore(world.snapshot())` does.
+  struct State {
+    std::vector<BodySetup> setups;  ///< by place in snapshot.ids
+    Snapshot snapshot;
+    BodyId next_id = 0;
+  };
+  State state() const;
+  World(const WorldSettings& settings, const State& state);
 
   /// Deepest overlap of any two bodies, or a body and the ground, where it is not tolerated (see BodySetup::family)
   /// [m]. For checks of the initial state: a pair of ids with its depth, deepest first.

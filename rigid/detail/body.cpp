@@ -111,8 +111,7 @@ std::unique_ptr<Body> make_body(BodyId id, const BodySetup& setup, const Vec3& g
   add_parts(*body, setup);
   body->shape = joint_shape(*body);
   body->object = make_object(*body);
-  const double slow = sleep_share * std::sqrt(gravity.norm() * body->radius);
-  if (body->is_dynamic()) body->object->setSleepingThresholds(slow, slow / body->radius);
+  body->slow_speed = sleep_share * std::sqrt(gravity.norm() * body->radius);
   place(*body, {setup.pose, setup.twist});
   return body;
 }
@@ -127,6 +126,23 @@ std::unique_ptr<Body> make_ground(const WorldSettings& settings) {
   body->shape->setMargin(0);
   body->object = make_object(*body);
   return body;
+}
+
+void set_asleep(Body& body, bool asleep) {
+  body.asleep = asleep;
+  body.quiet_time = 0;
+  if (!body.is_dynamic()) return;
+  const bool fixed = asleep;
+  body.object->setMassProps(fixed ? 0 : body.mass, fixed ? btVector3(0, 0, 0) : to_bullet(body.moments));
+  body.object->updateInertiaTensor();
+  if (!asleep) return;
+  body.object->setLinearVelocity(btVector3(0, 0, 0));
+  body.object->setAngularVelocity(btVector3(0, 0, 0));
+}
+
+bool is_slow(const Body& body) {
+  return body.object->getLinearVelocity().length() < body.slow_speed &&
+         body.object->getAngularVelocity().length() < body.slow_speed / body.radius;
 }
 
 BodyState state_of(const Body& body) {
@@ -145,9 +161,7 @@ void place(Body& body, const BodyState& state) {
   const bool moves = body.motion != Motion::fixed;
   body.object->setLinearVelocity(moves ? to_bullet(state.twist.linear) : btVector3(0, 0, 0));
   body.object->setAngularVelocity(moves ? to_bullet(state.twist.angular) : btVector3(0, 0, 0));
-  const bool turns = !state.twist.linear.isZero(0) || !state.twist.angular.isZero(0);
-  if (body.motion == Motion::kinematic)
-    body.object->forceActivationState(turns ? DISABLE_DEACTIVATION : ISLAND_SLEEPING);
+  if (body.motion == Motion::kinematic) body.asleep = state.twist.linear.isZero(0) && state.twist.angular.isZero(0);
 }
 
 Mat3 world_inertia(const Body& body) {

@@ -25,18 +25,27 @@ struct Body {
   std::vector<Hull> parts;                                    ///< principal axes; empty for the ground
   double ground_height = 0;                                   ///< of the ground only
   double radius = 0;                                          ///< of the bounding sphere about the centre of mass [m]
-  double reach = 0;   ///< how far it can come in a sub-step: contacts are looked for that far [m]
-  double stride = 0;  ///< largest motion that a contact search may skip [m]
+  double reach = 0;       ///< how far it can come in a sub-step: contacts are looked for that far [m]
+  double stride = 0;      ///< largest motion that a contact search may skip [m]
+  bool asleep = false;    ///< at rest until something wakes it; the solver then takes it for fixed
+  double quiet_time = 0;  ///< for how long it has been slow [s]
+  double slow_speed = 0;  ///< below it, and below slow_speed / radius of spin, it is slow [m/s]
   std::unique_ptr<btCollisionShape> shape;
   std::unique_ptr<btRigidBody> object;
 
   bool is_ground() const { return id == ground_id; }
   bool is_dynamic() const { return motion == Motion::dynamic; }
+  /// Moves, or may be moved by what touches it.
+  bool is_awake() const { return motion != Motion::fixed && !asleep; }
 };
 
-/// Errors: see World::add.
+/// The hulls of `setup` are copied. Errors: see World::add.
 std::unique_ptr<Body> make_body(BodyId id, const BodySetup& setup, const Vec3& gravity);
 std::unique_ptr<Body> make_ground(const WorldSettings& settings);
+
+/// Also zeroes the velocities of a dynamic body that falls asleep.
+void set_asleep(Body& body, bool asleep);
+bool is_slow(const Body& body);
 
 BodyState state_of(const Body& body);
 void place(Body& body, const BodyState& state);

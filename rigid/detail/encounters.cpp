@@ -26,7 +26,7 @@ struct StepMotion {
 StepMotion motion_of(const Body& body, const Vec3& gravity, double time_step) {
   const btRigidBody& object = *body.object;
   Vec3 shift = to_eigen(object.getLinearVelocity()) * time_step;
-  if (body.is_dynamic() && object.isActive()) shift += gravity * (time_step * time_step);
+  if (body.is_dynamic() && !body.asleep) shift += gravity * (time_step * time_step);
   return {shift, object.getAngularVelocity().length() * body.radius * time_step};
 }
 
@@ -56,7 +56,7 @@ std::vector<std::pair<int, int>> touching(const std::vector<Box>& boxes) {
   return pairs;
 }
 
-int sub_steps(const std::vector<const Body*>& bodies, const Body* ground, const Vec3& gravity, double time_step) {
+int sub_steps(const std::vector<Body*>& bodies, const Body* ground, const Vec3& gravity, double time_step) {
   std::vector<StepMotion> motions;
   std::vector<Box> boxes;
   for (const Body* body : bodies) {

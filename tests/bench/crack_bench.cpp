@@ -4,14 +4,13 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
 #include <vector>
 
-#include <nlohmann/json.hpp>
 #include <tbb/global_control.h>
 
 #include "crack/extract.h"
 #include "crack/surface_detail.h"
+#include "tests/bench/table.h"
 
 namespace sunder::crack {
 namespace {
@@ -63,23 +62,7 @@ Timing time_extraction(const DamageField& field, double nodes_per_point) {
   return timing;
 }
 
-class Table {
- public:
-  void add(const std::string& key, double value, const std::string& what) {
-    std::printf("%-32s %12.5g   %s\n", key.c_str(), value, what.c_str());
-    std::fflush(stdout);
-    json_[key] = value;
-  }
-  void save(const char* file) const {
-    std::ofstream out(file);
-    if (!(out << json_.dump(2) << "\n")) throw Error(ErrorKind::io, std::string("cannot write ") + file);
-  }
-
- private:
-  nlohmann::ordered_json json_;
-};
-
-void measure(Table& table) {
+void measure(bench::Table& table) {
   const DamageField field = plane_in_cube(points_along);
   const Timing coarse = time_extraction(field, 2), fine = time_extraction(field, 1);
   table.add("extract_plane_2x_seconds", coarse.seconds,
@@ -119,7 +102,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    sunder::crack::Table table;
+    sunder::bench::Table table;
     sunder::crack::measure(table);
     if (json) table.save(argv[2]);
     return 0;
