@@ -115,7 +115,7 @@ BodyId World::add(const BodySetup& setup) {
 
 void World::remove(BodyId id) {
   impl_->at(id);
-  detail::wake(detail::touching(id, impl_->history.contacts), impl_->history.contacts, impl_->list());
+  detail::wake(detail::call_neighbours(id, impl_->history.contacts), impl_->history.contacts, impl_->list());
   impl_->members.erase(id);
   std::erase_if(impl_->history.contacts,
                 [&](const ContactMemory& m) { return m.pair.body_a == id || m.pair.body_b == id; });
@@ -125,7 +125,7 @@ BodyState World::state(BodyId id) const { return detail::state_of(impl_->at(id))
 
 void World::set_state(BodyId id, const BodyState& state) {
   Body& body = impl_->at(id);
-  detail::wake(detail::touching(id, impl_->history.contacts), impl_->history.contacts, impl_->list());
+  detail::wake(detail::call_neighbours(id, impl_->history.contacts), impl_->history.contacts, impl_->list());
   if (body.is_dynamic() && body.asleep) detail::set_asleep(body, false);
   detail::place(body, state);
 }
@@ -141,7 +141,7 @@ void World::drive(BodyId id, const Pose& pose) {
   const bool starts = body.asleep;
   detail::place(body, state);
   if (starts && !body.asleep)
-    detail::wake(detail::touching(id, impl_->history.contacts), impl_->history.contacts, impl_->list());
+    detail::wake(detail::call_neighbours(id, impl_->history.contacts), impl_->history.contacts, impl_->list());
 }
 
 double World::mass(BodyId id) const { return impl_->at(id).mass; }

@@ -38,6 +38,8 @@ struct Placed {
     return best;
   }
 
+  Vec3 middle() const { return origin + rotation * hull.middle; }
+
   const HullFace& face_along(const Vec3& direction) const {
     const Vec3 local = rotation.transpose() * direction;
     return *std::max_element(hull.faces.begin(), hull.faces.end(), [&](const HullFace& f, const HullFace& g) {
@@ -65,6 +67,24 @@ void improve(Axis& best, const Axis& other) {
   if (other.gap > best.gap) best = other;
 }
 
+// A direction along which the parts are further apart than `reach`, or the last one tried. Most pairs whose boxes meet
+// are found apart this way, at a tenth of what their distance costs. Chung and Wang, "Quick collision detection of
+// polytopes in virtual environments" (1996).
+Axis quick_separation(const Placed& a, const Placed& b) {
+  constexpr int most_turns = 6;
+  Vec3 direction = a.middle() - b.middle();
+  direction = direction.norm() > 0 ? direction.normalized() : Vec3::UnitY();
+  Axis axis;
+  for (int turn = 0; turn < most_turns; ++turn) {
+    const Vec3 nearest = a.point(a.extreme(-direction)) - b.point(b.extreme(direction));
+    axis = {direction, direction.dot(nearest)};
+    if (axis.gap >= 0 || !(nearest.norm() > 0)) break;
+    const Vec3 away = nearest.normalized();
+    direction = (direction - 2 * direction.dot(away) * away).normalized();
+  }
+  return axis;
+}
+
 // The best face normal of either part: exact where a face touches, and never too far off elsewhere.
 Axis best_face_axis(const Placed& a, const Placed& b) {
   Axis best;
@@ -80,9 +100,15 @@ struct Separation {
 
 Separation separation(const Placed& a, const btTransform& place_a, const Placed& b, const btTransform& place_b,
                       double reach) {
-  const btVector3 guess = place_a.getOrigin() - place_b.getOrigin();
-  btGjkEpaSolver2::sResults found;
   Separation result;
+  const Axis quick = quick_separation(a, b);
+  if (quick.gap > reach) {
+    result.axis = quick;
+    return result;
+  }
+  // The solver starts from a direction in the axes of the first shape.
+  const btVector3 guess = to_bullet(a.rotation.transpose() * quick.normal);
+  btGjkEpaSolver2::sResults found;
   const bool apart = btGjkEpaSolver2::Distance(a.hull.shape.get(), place_a, b.hull.shape.get(), place_b, guess, found);
   if (apart && found.distance > reach) {
     result.axis.gap = found.distance;

@@ -8,7 +8,6 @@
 
 #include "rigid/detail/contact.h"
 #include "rigid/detail/convert.h"
-#include "rigid/detail/sleep.h"
 
 namespace sunder::rigid::detail {
 namespace {
@@ -168,27 +167,25 @@ void Dynamics::find_contacts(const Step& step) {
     std::vector<Manifold> more = manifolds_of({active, waiting.end()}, step.bodies, step.ground);
     waiting.erase(active, waiting.end());
     std::move(more.begin(), more.end(), std::back_inserter(found_));
-    const std::vector<BodyId> ids = roused(step);
-    if (ids.empty()) break;
-    wake(ids, step.history.contacts, step.bodies);
+    if (!wake(calls(step), step.history.contacts, step.bodies)) break;
   }
   std::sort(found_.begin(), found_.end(), [](const Manifold& m, const Manifold& n) { return m.pair < n.pair; });
 }
 
-// Sleepers that something touches hard enough.
-std::vector<BodyId> Dynamics::roused(const Step& step) const {
-  std::vector<BodyId> ids;
+// To sleepers that something touches.
+std::vector<Call> Dynamics::calls(const Step& step) const {
+  std::vector<Call> list;
   for (const Manifold& m : found_) {
     if (!m.a->asleep && !m.b->asleep) continue;
     for (const Contact& contact : m.contacts) {
       const Vec3 relative = velocity_at(*m.a->object, contact.on_a) - velocity_at(*m.b->object, contact.on_b);
       const double touching = touching_share * std::min(m.a->radius, m.b->radius);
       if (contact.distance > std::max(touching, -relative.dot(contact.normal) * step.length)) continue;
-      if (rouses(*m.a, *m.b, relative.norm())) ids.push_back(m.a->id);
-      if (rouses(*m.b, *m.a, relative.norm())) ids.push_back(m.b->id);
+      list.push_back({m.a->id, speed_set(*m.a, *m.b, relative.norm())});
+      list.push_back({m.b->id, speed_set(*m.b, *m.a, relative.norm())});
     }
   }
-  return ids;
+  return list;
 }
 
 // Fills Bullet's manifolds. A pair with a newborn starts with its whole overlap tolerated; from then on what is

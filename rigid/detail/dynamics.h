@@ -10,6 +10,7 @@
 #include "rigid/detail/body.h"
 #include "rigid/detail/manifolds.h"
 #include "rigid/detail/patches.h"
+#include "rigid/detail/sleep.h"
 
 namespace sunder::rigid::detail {
 
@@ -50,7 +51,7 @@ class Dynamics {
 
   Vec3 acceleration_of(const Body& body) const;
   void find_contacts(const Step& step);
-  std::vector<BodyId> roused(const Step& step) const;
+  std::vector<Call> calls(const Step& step) const;
   void load(const Step& step);
   void prepare(btPersistentManifold& manifold, double tolerance, const Step& step);
   void keep_first_hits();

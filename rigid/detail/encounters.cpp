@@ -58,11 +58,16 @@ std::vector<std::pair<int, int>> touching(const std::vector<Box>& boxes) {
 
 int sub_steps(const std::vector<Body*>& bodies, const Body* ground, const Vec3& gravity, double time_step) {
   std::vector<StepMotion> motions;
-  std::vector<Box> boxes;
+  double farthest = 0, least_stride = std::numeric_limits<double>::infinity(), fastest_turn = 0;
   for (const Body* body : bodies) {
     motions.push_back(motion_of(*body, gravity, time_step));
-    boxes.push_back(swept(*body, motions.back()));
+    farthest = std::max(farthest, motions.back().shift.norm() + motions.back().sweep);
+    least_stride = std::min(least_stride, body->stride);
+    fastest_turn = std::max(fastest_turn, motions.back().sweep / body->radius);
   }
+  if (2 * farthest <= least_stride && fastest_turn <= turn_per_step) return 1;
+  std::vector<Box> boxes;
+  for (std::size_t i = 0; i < bodies.size(); ++i) boxes.push_back(swept(*bodies[i], motions[i]));
   double steps = 1;
   for (const auto& [i, j] : touching(boxes)) {
     if (!bodies[i]->is_dynamic() && !bodies[j]->is_dynamic()) continue;

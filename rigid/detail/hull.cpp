@@ -79,6 +79,7 @@ std::optional<Hull> make_hull(const geometry::TriangleMesh& mesh, const Mat3& li
     box.extend(hull.points.back());
   }
   if (hull.points.size() < 4) return std::nullopt;
+  hull.middle = box.center();
   hull.radius = box.diagonal().norm() / 2;
   hull.thickness = 2 * hull.radius;
   for (int i = 0; i < computer.faces.size(); ++i) {

@@ -20,6 +20,7 @@ struct HullFace {
 struct Hull {
   std::vector<Vec3> points;                  ///< corners only [m]
   std::vector<HullFace> faces;               ///< coplanar faces merged
+  Vec3 middle = Vec3::Zero();                ///< of the bounding box [m]
   double radius = 0;                         ///< half the diagonal of the bounding box [m]
   double thickness = 0;                      ///< smallest width over all face normals [m]
   std::unique_ptr<btConvexHullShape> shape;  ///< the same points, margin 0

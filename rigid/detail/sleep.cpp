@@ -1,28 +1,17 @@
 #include "rigid/detail/sleep.h"
 
 #include <algorithm>
-#include <numeric>
+#include <limits>
+#include <utility>
 
 namespace sunder::rigid::detail {
 namespace {
 
 // A body that was slow for so long may sleep [s].
 constexpr double quiet_time = 0.5;
-
-/// Groups of bodies by their places in the list.
-class Groups {
- public:
-  explicit Groups(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int of(int i) {
-    while (parent_[at(i)] != i) i = parent_[at(i)] = parent_[at(parent_[at(i)])];
-    return i;
-  }
-  void join(int i, int j) { parent_[at(std::max(of(i), of(j)))] = std::min(of(i), of(j)); }
-
- private:
-  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
-  std::vector<int> parent_;
-};
+// Share of a call that a woken body passes on.
+constexpr double passed_on = 0.5;
+constexpr double infinite = std::numeric_limits<double>::infinity();
 
 /// Place in the list; -1 for the ground and for bodies that are gone.
 int place_of(BodyId id, const std::vector<Body*>& bodies) {
@@ -33,59 +22,69 @@ int place_of(BodyId id, const std::vector<Body*>& bodies) {
 
 }  // namespace
 
-bool rouses(const Body& sleeper, const Body& other, double speed) {
-  if (!sleeper.asleep || !sleeper.is_dynamic() || !other.is_awake()) return false;
-  const double share = other.is_dynamic() ? std::min(1.0, other.mass / sleeper.mass) : 1.0;
-  return share * speed > sleeper.slow_speed;
+double speed_set(const Body& sleeper, const Body& other, double speed) {
+  if (!sleeper.asleep || !sleeper.is_dynamic() || !other.is_awake()) return 0;
+  return other.is_dynamic() ? std::min(1.0, other.mass / sleeper.mass) * speed : speed;
 }
 
-std::vector<BodyId> touching(BodyId id, const std::vector<ContactMemory>& contacts) {
-  std::vector<BodyId> ids;
+std::vector<Call> call_neighbours(BodyId id, const std::vector<ContactMemory>& contacts) {
+  std::vector<Call> calls;
   for (const ContactMemory& contact : contacts) {
-    if (contact.pair.body_a == id) ids.push_back(contact.pair.body_b);
-    if (contact.pair.body_b == id) ids.push_back(contact.pair.body_a);
+    if (contact.pair.body_a == id) calls.push_back({contact.pair.body_b, infinite});
+    if (contact.pair.body_b == id) calls.push_back({contact.pair.body_a, infinite});
   }
-  return ids;
+  return calls;
 }
 
-void wake(const std::vector<BodyId>& roused, const std::vector<ContactMemory>& contacts,
-          const std::vector<Body*>& bodies) {
-  Groups groups(bodies.size());
+bool wake(std::vector<Call> calls, const std::vector<ContactMemory>& contacts, const std::vector<Body*>& bodies) {
+  const auto answers = [&](const Call& call) -> Body* {
+    const int place = place_of(call.id, bodies);
+    Body* body = place < 0 ? nullptr : bodies[static_cast<std::size_t>(place)];
+    return body && body->is_dynamic() && body->asleep && call.speed > body->slow_speed ? body : nullptr;
+  };
+  std::erase_if(calls, [&](const Call& call) { return !answers(call); });
+  if (calls.empty()) return false;
+  std::vector<std::pair<BodyId, BodyId>> neighbours;
   for (const ContactMemory& contact : contacts) {
-    const int a = place_of(contact.pair.body_a, bodies), b = place_of(contact.pair.body_b, bodies);
-    if (a < 0 || b < 0) continue;
-    const Body &first = *bodies[static_cast<std::size_t>(a)], &second = *bodies[static_cast<std::size_t>(b)];
-    if (first.is_dynamic() && first.asleep && second.is_dynamic() && second.asleep) groups.join(a, b);
+    neighbours.emplace_back(contact.pair.body_a, contact.pair.body_b);
+    neighbours.emplace_back(contact.pair.body_b, contact.pair.body_a);
   }
-  std::vector<bool> wakes(bodies.size(), false);
-  for (BodyId id : roused)
-    if (const int place = place_of(id, bodies); place >= 0) wakes[static_cast<std::size_t>(groups.of(place))] = true;
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    Body& body = *bodies[i];
-    if (body.is_dynamic() && body.asleep && wakes[static_cast<std::size_t>(groups.of(static_cast<int>(i)))])
-      set_asleep(body, false);
+  std::sort(neighbours.begin(), neighbours.end());
+  neighbours.erase(std::unique(neighbours.begin(), neighbours.end()), neighbours.end());
+  // The loudest first: whom a weaker call leaves asleep may still hear a stronger one.
+  const auto weaker = [](const Call& a, const Call& b) { return std::pair(a.speed, b.id) < std::pair(b.speed, a.id); };
+  std::make_heap(calls.begin(), calls.end(), weaker);
+  while (!calls.empty()) {
+    std::pop_heap(calls.begin(), calls.end(), weaker);
+    const Call call = calls.back();
+    calls.pop_back();
+    Body* body = answers(call);
+    if (!body) continue;
+    set_asleep(*body, false);
+    const auto first = std::lower_bound(neighbours.begin(), neighbours.end(), std::pair(call.id, ground_id));
+    for (auto n = first; n != neighbours.end() && n->first == call.id; ++n) {
+      const int place = place_of(n->second, bodies);
+      if (place < 0) continue;
+      calls.push_back({n->second, speed_set(*bodies[static_cast<std::size_t>(place)], *body, passed_on * call.speed)});
+      std::push_heap(calls.begin(), calls.end(), weaker);
+    }
   }
+  return true;
 }
 
 void let_sleep(const std::vector<std::pair<Body*, Body*>>& touching, const std::vector<Body*>& bodies,
                double time_step) {
   for (Body* body : bodies)
     if (body->is_dynamic() && !body->asleep) body->quiet_time = is_slow(*body) ? body->quiet_time + time_step : 0;
-  Groups groups(bodies.size());
+  std::vector<const Body*> disturbed;
   for (const auto& [a, b] : touching) {
-    for (const auto& [body, other] : {std::pair(a, b), std::pair(b, a)})
-      if (body->is_dynamic() && other->motion == Motion::kinematic && other->is_awake()) body->quiet_time = 0;
-    const int i = place_of(a->id, bodies), j = place_of(b->id, bodies);
-    if (i >= 0 && j >= 0 && a->is_dynamic() && b->is_dynamic() && !a->asleep && !b->asleep) groups.join(i, j);
+    if (b->is_awake() && !(b->quiet_time > 0)) disturbed.push_back(a);
+    if (a->is_awake() && !(a->quiet_time > 0)) disturbed.push_back(b);
   }
-  std::vector<bool> restless(bodies.size(), false);
-  for (std::size_t i = 0; i < bodies.size(); ++i)
-    if (bodies[i]->is_dynamic() && !bodies[i]->asleep && bodies[i]->quiet_time <= quiet_time)
-      restless[static_cast<std::size_t>(groups.of(static_cast<int>(i)))] = true;
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    Body& body = *bodies[i];
-    if (body.is_dynamic() && !body.asleep && !restless[static_cast<std::size_t>(groups.of(static_cast<int>(i)))])
-      set_asleep(body, true);
+  std::sort(disturbed.begin(), disturbed.end());
+  for (Body* body : bodies) {
+    if (!body->is_dynamic() || body->asleep || body->quiet_time <= quiet_time) continue;
+    if (!std::binary_search(disturbed.begin(), disturbed.end(), body)) set_asleep(*body, true);
   }
 }
 

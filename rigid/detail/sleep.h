@@ -1,6 +1,7 @@
 #pragma once
-/// Which bodies rest, and what wakes them. Bodies that touch fall asleep together and wake together; a light or slow
-/// touch does not wake a sleeper, which then stands like a fixed body.
+/// Which bodies rest, and what wakes them. Each body falls asleep by itself, so that one fragment that still rolls does
+/// not keep a heap awake; sleepers that touch wake together. A light or slow touch wakes no sleeper, which then stands
+/// like a fixed body.
 #include <vector>
 
 #include "rigid/detail/body.h"
@@ -8,18 +9,25 @@
 
 namespace sunder::rigid::detail {
 
-/// A contact of this relative speed [m/s] sets the sleeper faster than it may be at rest.
-bool rouses(const Body& sleeper, const Body& other, double speed);
+/// A body that is to wake, and how fast what touches it would set it in motion [m/s].
+struct Call {
+  BodyId id = 0;
+  double speed = 0;
+};
 
-/// Bodies that touch this one or nearly so.
-std::vector<BodyId> touching(BodyId id, const std::vector<ContactMemory>& contacts);
+/// Of the sleeper, by a contact at this relative speed with the other body; 0 unless it sleeps and the other is awake.
+double speed_set(const Body& sleeper, const Body& other, double speed);
 
-/// Wakes the sleepers among `roused` and all that they touch, directly or through others. `bodies` in order of ids.
-void wake(const std::vector<BodyId>& roused, const std::vector<ContactMemory>& contacts,
-          const std::vector<Body*>& bodies);
+/// A call of infinite speed to each body that touches this one or nearly so.
+std::vector<Call> call_neighbours(BodyId id, const std::vector<ContactMemory>& contacts);
 
-/// After a sub-step: counts for how long bodies have been slow and lets those groups sleep in which all have been for
-/// long enough. `touching`: pairs that exchanged forces.
+/// Wakes the sleepers that are called to more than their slow speed, and lets each call its neighbours at half the
+/// speed: a hit wakes a chain of bodies within one sub-step, and the tremble of one in a heap wakes few. `bodies` in
+/// order of ids. True when one woke.
+bool wake(std::vector<Call> calls, const std::vector<ContactMemory>& contacts, const std::vector<Body*>& bodies);
+
+/// After a sub-step: counts for how long bodies have been slow, and lets those sleep that have been for long enough
+/// while nothing that moves touches them. `touching`: pairs that exchanged forces.
 void let_sleep(const std::vector<std::pair<Body*, Body*>>& touching, const std::vector<Body*>& bodies,
                double time_step);
 
