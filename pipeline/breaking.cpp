@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include <tbb/parallel_for.h>
+
 #include "core/random.h"
 #include "pipeline/detail/piece_mesh.h"
 #include "pipeline/quality.h"
@@ -26,7 +28,9 @@ RigidPart rotated(const RigidPart& part, const Quat& q) {
 
 }  // namespace
 
-FractureInput Simulation::fracture_input(const Hit& hit, std::vector<rigid::BodyId>& partner_ids) const {
+/// `number`: of the solve, counted over the run.
+FractureInput Simulation::fracture_input(const Hit& hit, std::size_t number,
+                                         std::vector<rigid::BodyId>& partner_ids) const {
   const Live& live = live_.at(hit.body);
   const Piece& piece = piece_of(live);
   const Pose pose = world_.state(hit.body).pose;
@@ -66,22 +70,30 @@ FractureInput Simulation::fracture_input(const Hit& hit, std::vector<rigid::Body
   input.solve.scatter_length = scene_.fracture.scatter_length;
   input.crack = {scene_.fracture.node_spacing,  scene_.fracture.debris_size,   scene_.effects.hairlines,
                  scene_.effects.surface_detail, scene_.fracture.level_set_cut, scene_.fracture.voxel_size};
-  input.seed = input.solve.seed =
-      random_word(scene_.seed, static_cast<std::uint64_t>(piece.id), report_.fractures.size());
-  const double share = piece.volume / original_volume_[static_cast<std::size_t>(live.origin_index)];
+  input.seed = input.solve.seed = random_word(scene_.seed, static_cast<std::uint64_t>(piece.id), number);
   input.own = live.particles;
-  input.particles =
-      static_cast<int>(settings_of(scene_.quality).particles * std::clamp(share, fragment_particle_share, 1.0));
+  input.particles = static_cast<int>(settings_of(scene_.quality).particles *
+                                     std::clamp(share_of(live), fragment_particle_share, 1.0));
+  input.nearly_whole = scene_.fracture.nearly_whole_volume;
   return input;
 }
 
-void Simulation::solve(const Hit& hit, Progress& progress) {
-  Live& live = live_.at(hit.body);
-  live.last_solve = world_.time();
-  std::vector<rigid::BodyId> partners;
-  const FractureInput input = fracture_input(hit, partners);
-  const FractureOutcome outcome = fracture(input, progress);
+/// The hits are of bodies that do not touch each other, so their solves run side by side; what comes of them is settled
+/// in the order of the hits.
+void Simulation::break_bodies(const std::vector<Hit>& hits, Progress& progress) {
+  std::vector<FractureInput> inputs;
+  std::vector<std::vector<rigid::BodyId>> partners(hits.size());
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    live_.at(hits[i].body).last_solve = world_.time();
+    inputs.push_back(fracture_input(hits[i], report_.fractures.size() + i, partners[i]));
+  }
+  const std::vector<FractureOutcome> outcomes = fracture_all(inputs, progress);
+  for (std::size_t i = 0; i < hits.size(); ++i) settle(hits[i], inputs[i], outcomes[i], partners[i]);
+}
 
+void Simulation::settle(const Hit& hit, const FractureInput& input, const FractureOutcome& outcome,
+                        const std::vector<rigid::BodyId>& partners) {
+  Live& live = live_.at(hit.body);
   FractureRecord record = record_of(input, outcome);
   record.piece = live.piece;
   record.body = piece_of(live).name;
@@ -161,19 +173,63 @@ std::vector<Push> Simulation::pushes_of(const Hit& hit, const FractureOutcome& o
   return pushes;
 }
 
-/// The partners take their pushes where they touch the body. A fast partner may have touched late in the step that was
-/// taken back: it is put where it touched.
+/// A fast partner may have touched late in the step that was taken back: it is put where it touched.
+void Simulation::meet_partners(const Hit& hit, const std::vector<Push>& pushes) {
+  const Vec3 centre = world_.state(hit.body).pose.position;
+  for (std::size_t l = 0; l < pushes.size(); ++l) {
+    if (pushes[l].partner < 0) continue;
+    rigid::BodyState other = world_.state(hit.impacts[l].body_b);
+    other.pose.position = centre + pushes[l].arm - pushes[l].partner_arm;
+    world_.set_state(hit.impacts[l].body_b, other);
+  }
+}
+
+/// The partners take their pushes where they touch the body.
 void Simulation::push_partners(const Hit& hit, const std::vector<Push>& pushes) {
   const Vec3 centre = world_.state(hit.body).pose.position;
   for (std::size_t l = 0; l < pushes.size(); ++l) {
     const rigid::BodyId id = hit.impacts[l].body_b;
     if (pushes[l].partner < 0) continue;
     rigid::BodyState other = world_.state(id);
-    other.pose.position = centre + pushes[l].arm - pushes[l].partner_arm;
+    const Vec3 arm = centre + pushes[l].arm - other.pose.position;
     other.twist.linear -= pushes[l].impulse / free_mass(id);
-    other.twist.angular -= world_.world_inertia(id).inverse() * pushes[l].partner_arm.cross(pushes[l].impulse);
+    other.twist.angular -= world_.world_inertia(id).inverse() * arm.cross(pushes[l].impulse);
     world_.set_state(id, other);
   }
+}
+
+/// Of bodies of the world that yield, in world axes about a point.
+Momentum Simulation::momentum_of(const std::vector<rigid::BodyId>& ids, const Vec3& about) const {
+  std::vector<RigidPart> parts;
+  std::vector<Twist> twists;
+  for (rigid::BodyId id : ids) {
+    if (std::isinf(free_mass(id))) continue;
+    parts.push_back(world_part(id));
+    parts.back().centre = world_.state(id).pose.position - about;
+    twists.push_back(world_.state(id).twist);
+  }
+  return momentum(parts, twists);
+}
+
+double Simulation::energy_of(const std::vector<rigid::BodyId>& ids) const {
+  double sum = 0;
+  for (rigid::BodyId id : ids) sum += energy_of(id);
+  return sum;
+}
+
+/// Motion of the pieces in world axes about the centre of the body: that of their own material, with the momentum that
+/// the solve's contacts delivered and no more energy than there is.
+std::vector<Twist> Simulation::twists_of(const FractureOutcome& outcome, const std::vector<RigidPart>& parts,
+                                         const rigid::BodyState& state, const Momentum& delivered) const {
+  std::vector<Twist> twists;
+  const Quat& q = state.pose.orientation;
+  for (const BrokenPiece& piece : outcome.pieces) twists.push_back({q * piece.twist.linear, q * piece.twist.angular});
+  twists = with_momentum(parts, twists, delivered);
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    twists[k].linear += state.twist.at(parts[k].centre);
+    twists[k].angular += state.twist.angular;
+  }
+  return twists;
 }
 
 /// The body is replaced by its pieces. The pieces together get the momentum that the solve's contacts delivered, the
@@ -182,56 +238,77 @@ void Simulation::hand_over(const Hit& hit, const FractureOutcome& outcome, const
                            FractureRecord& record) {
   const Live parent = live_.at(hit.body);
   const rigid::BodyState state = world_.state(hit.body);
-  const Quat& q = state.pose.orientation;
+  const bool free = motion_of(parent) == rigid::Motion::dynamic;
   std::vector<RigidPart> body_parts, parts;
   std::vector<Piece> pieces = pieces_of(parent, outcome, body_parts);
-  std::vector<Twist> twists;
-  for (std::size_t k = 0; k < pieces.size(); ++k) {
-    parts.push_back(rotated(body_parts[k], q));
-    twists.push_back({q * outcome.pieces[k].twist.linear, q * outcome.pieces[k].twist.angular});
-  }
-  const auto partners_energy = [&] {
-    double sum = 0;
-    for (rigid::BodyId id : partners) sum += energy_of(id);
-    return sum;
-  };
-  record.kinetic_before = energy_of(hit.body) + partners_energy();
+  for (const RigidPart& part : body_parts) parts.push_back(rotated(part, state.pose.orientation));
+
+  record.kinetic_before = energy_of(hit.body) + energy_of(partners);
   const std::vector<Push> pushes = pushes_of(hit, outcome, partners);
-  push_partners(hit, pushes);
-  Momentum delivered;
+  meet_partners(hit, pushes);
+  std::vector<rigid::BodyId> all = partners;
+  all.push_back(hit.body);
+  Momentum expected = momentum_of(all, state.pose.position), delivered;
   for (const Push& push : pushes) {
-    delivered.linear += push.impulse;
-    delivered.angular += push.arm.cross(push.impulse);
+    const Momentum given{push.impulse, push.arm.cross(push.impulse)};
+    delivered = delivered + given;
+    if (push.partner < 0) expected = expected + given;
   }
-  twists = with_momentum(parts, twists, delivered);
-  const double available = record.kinetic_before - partners_energy();
-  for (std::size_t k = 0; k < parts.size(); ++k) {
-    twists[k].linear += state.twist.at(parts[k].centre);
-    twists[k].angular += state.twist.angular;
-  }
-  if (motion_of(parent) == rigid::Motion::dynamic && kinetic_energy(parts, twists) > available) {
+  push_partners(hit, pushes);
+  std::vector<Twist> twists = twists_of(outcome, parts, state, delivered);
+  // What the cracks took is no longer there to move the pieces.
+  const double available = record.kinetic_before - energy_of(partners) - outcome.solve.energy.fracture;
+  if (free && kinetic_energy(parts, twists) > available) {
     twists = with_energy_limit(parts, twists, available);
     ++report_.fallbacks["fragment_energy_limited"];
   }
-  record.kinetic_after = kinetic_energy(parts, twists) + partners_energy();
-  record.fragments = static_cast<int>(pieces.size());
 
-  world_.remove(hit.body);
-  live_.erase(hit.body);
+  remove(hit.body);
   ++fracture_count_[static_cast<std::size_t>(parent.origin_index)];
-  ++families_;
-  sequence_.pieces[static_cast<std::size_t>(parent.piece)].death_time = world_.time();
+  const std::vector<rigid::BodyId> ids = add_pieces(parent, outcome, pieces, body_parts, state.pose, twists);
+  record.fragments = static_cast<int>(pieces.size());
+  record.kinetic_after = kinetic_energy(parts, twists) + energy_of(partners);
+  all = partners;
+  all.insert(all.end(), ids.begin(), ids.end());
+  if (free) record.momentum_error = relative_difference(expected, momentum_of(all, state.pose.position), parts, twists);
+  std::move(pieces.begin(), pieces.end(), std::back_inserter(sequence_.pieces));
+}
+
+void Simulation::remove(rigid::BodyId id) {
+  const Live& live = live_.at(id);
+  sequence_.pieces[static_cast<std::size_t>(live.piece)].death_time = world_.time();
+  if (piece_of(live).generation > 0) --fragment_count_;
+  world_.remove(id);
+  live_.erase(id);
+}
+
+/// Fragments of one fracture touch along their cracks: they are one family, whose first overlaps push nothing apart.
+std::vector<rigid::BodyId> Simulation::add_pieces(const Live& parent, const FractureOutcome& outcome,
+                                                  const std::vector<Piece>& pieces, const std::vector<RigidPart>& parts,
+                                                  const Pose& pose, const std::vector<Twist>& twists) {
+  std::vector<Live> lives;
   for (std::size_t k = 0; k < pieces.size(); ++k) {
-    const RigidPart& part = body_parts[k];
+    const RigidPart& part = parts[k];
     Live live{pieces[k].id, parent.origin, parent.origin_index, {part.mass, Vec3::Zero(), part.inertia}};
     if (const auto& own = outcome.pieces[k].own) {
       Particles moved = *own;
       for (Vec3& x : moved.samples.points) x -= part.centre;
       live.particles = std::make_shared<Particles>(std::move(moved));
     }
-    add_body(pieces[k], live, {state.pose.position + parts[k].centre, q}, twists[k], families_);
+    lives.push_back(std::move(live));
   }
-  std::move(pieces.begin(), pieces.end(), std::back_inserter(sequence_.pieces));
+  const double original = original_volume_[static_cast<std::size_t>(parent.origin_index)];
+  std::vector<Hulls> hulls(pieces.size());
+  tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t k) {
+    hulls[k] = hulls_of(pieces[k], size_class(pieces[k].volume / original, scene_.fracture));
+  });
+  ++families_;
+  fragment_count_ += static_cast<int>(pieces.size());
+  std::vector<rigid::BodyId> ids;
+  for (std::size_t k = 0; k < pieces.size(); ++k)
+    ids.push_back(add_body(pieces[k], lives[k], std::move(hulls[k]), {pose * parts[k].centre, pose.orientation},
+                           twists[k], families_));
+  return ids;
 }
 
 void Simulation::note_coarse_grid(const Material& material, const FractureRecord& record) {

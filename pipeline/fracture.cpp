@@ -1,19 +1,20 @@
 #include "pipeline/fracture.h"
 
 #include <cmath>
+#include <exception>
 
 #include <Eigen/Cholesky>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include "geometry/mass_properties.h"
 #include "geometry/sample.h"
 #include "pipeline/handover.h"
+#include "pipeline/joint_progress.h"
 #include "pipeline/stopwatch.h"
 
 namespace sunder::pipeline {
 namespace {
-
-/// A piece of more than this share of the body keeps its particles.
-constexpr double nearly_whole = 0.98;
 
 mpm::Material solid(const Material& m) {
   return {m.density, m.youngs_modulus, m.poisson_ratio, m.tensile_strength, m.fracture_energy, m.weibull_modulus};
@@ -134,11 +135,32 @@ FractureOutcome fracture(const FractureInput& input, Progress& progress) {
     const std::size_t k = static_cast<std::size_t>(fragment.region);
     const geometry::MassProperties whole = geometry::mass_properties(fragment.mesh);
     BrokenPiece piece{fragment, {motion[k].at(whole.centroid - centre[k]), motion[k].angular}, nullptr};
-    if (whole.volume > nearly_whole * volume)
+    if (whole.volume >= input.nearly_whole * volume)
       piece.own = std::make_shared<Particles>(particles_of(*outcome.own, region, fragment.region));
     outcome.pieces.push_back(std::move(piece));
   }
   return outcome;
+}
+
+std::vector<FractureOutcome> fracture_all(const std::vector<FractureInput>& inputs, Progress& progress) {
+  std::vector<FractureOutcome> outcomes(inputs.size());
+  if (inputs.size() == 1) outcomes[0] = fracture(inputs[0], progress);
+  if (inputs.size() < 2) return outcomes;
+  JointProgress joint(progress, inputs.size());
+  std::vector<std::exception_ptr> failures(inputs.size());
+  tbb::parallel_for(std::size_t{0}, inputs.size(), [&](std::size_t i) {
+    // While it waits for its own parts, a solve must not begin with another one.
+    tbb::this_task_arena::isolate([&] {
+      try {
+        outcomes[i] = fracture(inputs[i], joint.part(i));
+      } catch (...) {
+        failures[i] = std::current_exception();
+      }
+    });
+  });
+  for (const std::exception_ptr& failure : failures)
+    if (failure) std::rethrow_exception(failure);
+  return outcomes;
 }
 
 }  // namespace sunder::pipeline

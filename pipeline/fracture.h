@@ -33,6 +33,7 @@ struct FractureInput {
   mpm::SolveSettings solve;
   CrackChoice crack;
   int particles = 20000;                           ///< to fill the body with, unless it has its own
+  double nearly_whole = 0.98;                      ///< a piece of this share of the body keeps its particles
   std::shared_ptr<const Particles> own = nullptr;  ///< of an earlier solve
   std::uint64_t seed = 1;
 };
@@ -58,5 +59,9 @@ struct FractureOutcome {
 /// Errors: those of mpm::solve and of the interruption. When nothing can cut the body it stays whole and the fallback
 /// "fracture_abandoned" is counted.
 FractureOutcome fracture(const FractureInput& input, Progress& progress);
+
+/// The same of several bodies side by side on all threads; the outcomes do not depend on the order in which they
+/// finish. Errors: the first of them by the order of the inputs.
+std::vector<FractureOutcome> fracture_all(const std::vector<FractureInput>& inputs, Progress& progress);
 
 }  // namespace sunder::pipeline

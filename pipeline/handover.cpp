@@ -35,6 +35,19 @@ Momentum momentum(const std::vector<RigidPart>& parts, const std::vector<Twist>&
   return m;
 }
 
+double relative_difference(const Momentum& expected, const Momentum& found, const std::vector<RigidPart>& parts,
+                           const std::vector<Twist>& twists) {
+  double linear = expected.linear.norm(), angular = expected.angular.norm();
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const Vec3 p = parts[k].mass * twists[k].linear;
+    linear += p.norm();
+    angular += parts[k].centre.cross(p).norm() + (parts[k].inertia * twists[k].angular).norm();
+  }
+  const auto share = [](double difference, double scale) { return difference > 0 ? difference / scale : 0; };
+  return std::max(share((found.linear - expected.linear).norm(), linear),
+                  share((found.angular - expected.angular).norm(), angular));
+}
+
 double kinetic_energy(const std::vector<RigidPart>& parts, const std::vector<Twist>& twists) {
   double energy = 0;
   for (std::size_t k = 0; k < parts.size(); ++k)

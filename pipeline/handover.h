@@ -18,6 +18,8 @@ struct Momentum {
   Vec3 angular = Vec3::Zero();  ///< about the origin of the frame [kg m^2/s]
 };
 
+inline Momentum operator+(const Momentum& a, const Momentum& b) { return {a.linear + b.linear, a.angular + b.angular}; }
+
 Momentum momentum(const std::vector<RigidPart>& parts, const std::vector<Twist>& twists);
 double kinetic_energy(const std::vector<RigidPart>& parts, const std::vector<Twist>& twists);
 
@@ -32,6 +34,11 @@ std::vector<Twist> with_momentum(const std::vector<RigidPart>& parts, std::vecto
 /// unchanged. A limit below the energy of the rigid motion gives the rigid motion.
 std::vector<Twist> with_energy_limit(const std::vector<RigidPart>& parts, const std::vector<Twist>& twists,
                                      double limit);
+
+/// The larger of the differences of linear and of angular momentum, over the sums of |m v| and of |r x m v| + |I w| of
+/// these parts and of the expected momentum itself: how much was lost or won where much may cancel.
+double relative_difference(const Momentum& expected, const Momentum& found, const std::vector<RigidPart>& parts,
+                           const std::vector<Twist>& twists);
 
 /// An impulse between a body and one of its partners at a contact; the partner gets the opposite.
 struct Push {

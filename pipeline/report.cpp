@@ -74,6 +74,7 @@ Json fracture_json(const FractureRecord& f) {
             {"fracture", f.energy.fracture},
             {"viscous", f.energy.viscous},
             {"numerical", f.energy.balance()}}},
+          {"momentum_error", f.momentum_error},
           {"stopped_by", f.stopped_by},
           {"damage_band", f.band_width},
           {"admissible_band", f.admissible_length},

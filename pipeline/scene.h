@@ -10,6 +10,7 @@
 #include "geometry/load.h"
 #include "mpm/spline.h"
 #include "pipeline/material.h"
+#include "pipeline/motion_path.h"
 #include "rigid/world.h"
 
 namespace sunder::pipeline {
@@ -41,7 +42,9 @@ struct SceneBody {
   Material material;
   bool breakable = true;
   rigid::Motion motion = rigid::Motion::dynamic;
-  int line = 0;  ///< of the body in the scene file
+  MotionPath path;                        ///< of a kinematic body; empty: it keeps its velocity
+  std::optional<double> minimum_impulse;  ///< instead of the scene's, of the body and its fragments [N s]
+  int line = 0;                           ///< of the body in the scene file
 };
 
 struct Ground {
@@ -52,9 +55,14 @@ struct Ground {
 struct FractureSettings {
   std::optional<double>
       minimum_impulse;  ///< [N s]; not set: the impulse whose energy could just open one crack through the body
-  double minimum_volume = 0.02;    ///< bodies under this share of their original body's volume do not break
-  int maximum_fractures = 4;       ///< of one original body and all its fragments
-  double refracture_delay = 0.05;  ///< a fragment cannot break sooner after its birth [s]
+  /// Bodies under this share of their original body's volume do not break; not set: tiny_volume.
+  std::optional<double> minimum_volume;
+  int maximum_fractures = 4;          ///< of one original body and all its fragments
+  int maximum_fragments = 10000;      ///< once there are so many in the whole scene nothing breaks any more
+  double refracture_delay = 0.05;     ///< a fragment cannot break sooner after its birth [s]
+  double tiny_volume = 0.05;          ///< share of the original volume under which a fragment is tiny,
+  double small_volume = 0.2;          ///< under which it is small,
+  double nearly_whole_volume = 0.98;  ///< and from which it is nearly the whole body
   DamageModel damage = DamageModel::front;
   LoadModel load = LoadModel::contact;
   int velocity_fields = 1;  ///< 2: the sides of a crack part and rub while the solve goes on

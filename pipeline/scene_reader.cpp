@@ -63,6 +63,16 @@ void read_spline(const Value& value, FractureSettings& settings) {
   settings.spline = value.word<mpm::Spline>(kSplines);
 }
 
+void read_small_volume(const Value& value, FractureSettings& settings) {
+  settings.small_volume = value.within(0, 1);
+  if (settings.small_volume < settings.tiny_volume) value.fail("has to be at least tiny_volume");
+}
+
+void read_nearly_whole_volume(const Value& value, FractureSettings& settings) {
+  settings.nearly_whole_volume = value.within(0, 1);
+  if (settings.nearly_whole_volume < settings.small_volume) value.fail("has to be at least small_volume");
+}
+
 void read_cut(const Value& value, FractureSettings& settings) {
   constexpr std::array<std::pair<std::string_view, bool>, 2> kWays = {{{"exact", false}, {"level_set", true}}};
   settings.level_set_cut = value.word<bool>(kWays);
@@ -77,7 +87,7 @@ void read_surface_detail(const Value& value, Effects& effects) {
   effects.surface_detail = value.word<std::string>(looks);
 }
 
-constexpr std::array<Key<FractureSettings>, 13> kFractureKeys = {{
+constexpr std::array<Key<FractureSettings>, 17> kFractureKeys = {{
     {"minimum_impulse",
      [](const Value& value, FractureSettings& settings) { settings.minimum_impulse = value.non_negative(); }},
     {"minimum_volume",
@@ -88,6 +98,13 @@ constexpr std::array<Key<FractureSettings>, 13> kFractureKeys = {{
      }},
     {"refracture_delay",
      [](const Value& value, FractureSettings& settings) { settings.refracture_delay = value.non_negative(); }},
+    {"maximum_fragments",
+     [](const Value& value, FractureSettings& settings) {
+       settings.maximum_fragments = static_cast<int>(value.integer(0, kMaximumCount));
+     }},
+    {"tiny_volume", [](const Value& value, FractureSettings& settings) { settings.tiny_volume = value.within(0, 1); }},
+    {"small_volume", read_small_volume},
+    {"nearly_whole_volume", read_nearly_whole_volume},
     {"damage", read_damage},
     {"load", read_load},
     {"velocity_fields",

@@ -7,6 +7,7 @@
 #include "geometry/convex_parts.h"
 #include "geometry/primitives.h"
 #include "pipeline/detail/piece_mesh.h"
+#include "pipeline/lifecycle.h"
 #include "pipeline/quality.h"
 #include "pipeline/stopwatch.h"
 
@@ -34,16 +35,7 @@ int steps_in_frame(const Scene& scene) {
   return static_cast<int>(std::ceil(settings_of(scene.quality).rigid_rate / scene.frame_rate - 1e-9));
 }
 
-/// Collision cost grows with the product of the parts of two bodies, and the shape of a small fragment hardly shows.
-geometry::ConvexPartsSettings collision_detail(double share_of_original) {
-  if (share_of_original < 0.005) return {.max_parts = 1, .excess = 0.1, .max_hull_vertices = 16};
-  if (share_of_original < 0.05) return {.max_parts = 2, .excess = 0.1, .max_hull_vertices = 24};
-  if (share_of_original < 0.2) return {.max_parts = 4, .excess = 0.1, .max_hull_vertices = 24};
-  if (share_of_original < 0.98) return {.max_parts = 8, .excess = 0.1, .max_hull_vertices = 24};
-  return {.max_parts = 16, .excess = 0.05, .max_hull_vertices = 32};
-}
-
-double size_of(const Piece& piece) { return geometry::bounds(piece.mesh).sizes().maxCoeff(); }
+double extent_of(const Piece& piece) { return geometry::bounds(piece.mesh).sizes().maxCoeff(); }
 
 }  // namespace
 
@@ -78,16 +70,21 @@ void Simulation::place(const SceneBody& body, int index) {
   part.centre.setZero();
   piece.inside.assign(piece.mesh.faces.size(), false);
   original_volume_[static_cast<std::size_t>(index)] = piece.volume;
-  const Live live{piece.id, &body, index, part};
-  add_body(piece, live, pose, {body.velocity, body.angular_velocity}, 0);
+  Live live{piece.id, &body, index, part};
+  live.start = pose.position;
+  add_body(piece, live, hulls_of(piece, SizeClass::nearly_whole), pose, {body.velocity, body.angular_velocity}, 0);
   sequence_.pieces.push_back(std::move(piece));
 }
 
-rigid::BodyId Simulation::add_body(const Piece& piece, const Live& live, const Pose& pose, const Twist& twist,
-                                   int family) {
+/// Empty when the piece is too thin for a hull.
+Simulation::Hulls Simulation::hulls_of(const Piece& piece, SizeClass size) {
+  return geometry::convex_parts(piece.mesh, collision_detail(size)).hulls;
+}
+
+rigid::BodyId Simulation::add_body(const Piece& piece, const Live& live, Hulls hulls, const Pose& pose,
+                                   const Twist& twist, int family) {
   rigid::BodySetup setup;
-  const double share = piece.volume / original_volume_[static_cast<std::size_t>(live.origin_index)];
-  setup.hulls = geometry::convex_parts(piece.mesh, collision_detail(share)).hulls;
+  setup.hulls = std::move(hulls);
   if (setup.hulls.empty()) {
     const Box box = geometry::bounds(piece.mesh);
     setup.hulls = {geometry::transformed(geometry::box(box.sizes().cwiseMax(1e-3 * box.sizes().maxCoeff())),
@@ -111,7 +108,7 @@ void Simulation::require_no_overlap() const {
   for (const rigid::World::Overlap& o : world_.overlaps()) {
     const Piece& a = piece_of(live_.at(o.body_a));
     const bool on_ground = o.body_b == rigid::ground_id;
-    const double size = on_ground ? size_of(a) : std::min(size_of(a), size_of(piece_of(live_.at(o.body_b))));
+    const double size = on_ground ? extent_of(a) : std::min(extent_of(a), extent_of(piece_of(live_.at(o.body_b))));
     if (o.depth <= tolerated_overlap * size) continue;
     char depth[32];
     std::snprintf(depth, sizeof depth, "%.3g mm", o.depth * 1e3);
@@ -128,7 +125,8 @@ bool Simulation::may_break(const Live& live, double now) const {
   if (!scene_.effects.fracture || !live.origin->breakable || !live.origin->material.breakable) return false;
   if (piece.generation > 0 && !scene_.effects.refracture) return false;
   if (fracture_count_[origin] >= scene_.fracture.maximum_fractures) return false;
-  if (piece.volume < scene_.fracture.minimum_volume * original_volume_[origin]) return false;
+  if (fragment_count_ >= scene_.fracture.maximum_fragments) return false;
+  if (share_of(live) < minimum_volume(scene_.fracture)) return false;
   const double delay = scene_.fracture.refracture_delay;
   if (piece.generation > 0 && now - piece.birth_time < delay) return false;
   return live.last_solve < now && now - live.last_solve >= delay;
@@ -137,6 +135,13 @@ bool Simulation::may_break(const Live& live, double now) const {
 const Piece& Simulation::piece_of(const Live& live) const {
   return sequence_.pieces[static_cast<std::size_t>(live.piece)];
 }
+
+/// Of the volume of the scene's body that it comes from.
+double Simulation::share_of(const Live& live) const {
+  return piece_of(live).volume / original_volume_[static_cast<std::size_t>(live.origin_index)];
+}
+
+SizeClass Simulation::size_of(const Live& live) const { return size_class(share_of(live), scene_.fracture); }
 
 /// Infinite for the ground and for bodies that do not yield.
 double Simulation::free_mass(rigid::BodyId id) const {
@@ -162,6 +167,7 @@ double Simulation::energy_of(rigid::BodyId id) const {
 
 /// Not set in the scene: the impulse whose energy could just open one crack of area V^(2/3).
 double Simulation::minimum_impulse(const Live& live, double partner_mass) const {
+  if (live.origin->minimum_impulse) return *live.origin->minimum_impulse;
   if (scene_.fracture.minimum_impulse) return *scene_.fracture.minimum_impulse;
   const Piece& piece = piece_of(live);
   const double energy = live.origin->material.fracture_energy * std::pow(piece.volume, 2.0 / 3);
@@ -215,7 +221,20 @@ std::vector<rigid::Impact> Simulation::step_world() {
   return world_.step();
 }
 
+/// Bodies on a path get the motion that takes them to where they are to be at the end of the step.
+void Simulation::drive_bodies() {
+  const double end = world_.time() + 1 / (scene_.frame_rate * steps_per_frame_);
+  for (const auto& [id, live] : live_) {
+    const SceneBody& body = *live.origin;
+    if (body.path.empty() || motion_of(live) != rigid::Motion::kinematic) continue;
+    const Pose anchor = pose_at(body.path, end);
+    const Quat turn = anchor.orientation * body.orientation.conjugate();
+    world_.drive(id, {anchor.position + turn * (live.start - body.position), turn});
+  }
+}
+
 void Simulation::step(Progress& progress) {
+  drive_bodies();
   if (!scene_.effects.fracture) {
     step_world();
     return;
@@ -225,7 +244,7 @@ void Simulation::step(Progress& progress) {
     const auto hits = breaking_hits(step_world(), before.time);
     if (hits.empty()) return;
     world_.restore(before);
-    for (const Hit& hit : hits) solve(hit, progress);
+    break_bodies(hits, progress);
   }
 }
 

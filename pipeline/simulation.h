@@ -6,6 +6,7 @@
 #include "core/progress.h"
 #include "pipeline/fracture.h"
 #include "pipeline/handover.h"
+#include "pipeline/lifecycle.h"
 #include "pipeline/report.h"
 #include "pipeline/run.h"
 #include "pipeline/scene.h"
@@ -38,9 +39,11 @@ class Simulation {
     const SceneBody* origin = nullptr;
     int origin_index = 0;
     RigidPart part;                                        ///< in the piece's frame
+    Vec3 start = Vec3::Zero();                             ///< of a body of the scene: its first position
     double last_solve = -1e300;                            ///< [s]
     std::shared_ptr<const Particles> particles = nullptr;  ///< of its last solve, in the piece's frame
   };
+  using Hulls = std::vector<geometry::TriangleMesh>;
   /// The impacts that one body takes in one step.
   struct Hit {
     rigid::BodyId body = 0;
@@ -48,25 +51,41 @@ class Simulation {
     double impulse = 0, severity = 0;
   };
 
+  static Hulls hulls_of(const Piece& piece, SizeClass size);
   void place(const SceneBody& body, int index);
   std::vector<rigid::Impact> step_world();
   void require_no_overlap() const;
-  rigid::BodyId add_body(const Piece& piece, const Live& live, const Pose& pose, const Twist& twist, int family);
+  rigid::BodyId add_body(const Piece& piece, const Live& live, Hulls hulls, const Pose& pose, const Twist& twist,
+                         int family);
   std::vector<Hit> breaking_hits(const std::vector<rigid::Impact>& impacts, double now) const;
   bool may_break(const Live& live, double now) const;
   rigid::Motion motion_of(const Live& live) const;
   double free_mass(rigid::BodyId id) const;
   RigidPart world_part(rigid::BodyId id) const;
   double energy_of(rigid::BodyId id) const;
+  double energy_of(const std::vector<rigid::BodyId>& ids) const;
   double minimum_impulse(const Live& live, double partner_mass) const;
   const Piece& piece_of(const Live& live) const;
-  void solve(const Hit& hit, Progress& progress);
-  FractureInput fracture_input(const Hit& hit, std::vector<rigid::BodyId>& partner_ids) const;
+  double share_of(const Live& live) const;
+  SizeClass size_of(const Live& live) const;
+  void drive_bodies();
+  void break_bodies(const std::vector<Hit>& hits, Progress& progress);
+  FractureInput fracture_input(const Hit& hit, std::size_t number, std::vector<rigid::BodyId>& partner_ids) const;
+  void settle(const Hit& hit, const FractureInput& input, const FractureOutcome& outcome,
+              const std::vector<rigid::BodyId>& partners);
   void account(const FractureRecord& record, const FractureOutcome& outcome);
   std::vector<Piece> pieces_of(const Live& parent, const FractureOutcome& outcome, std::vector<RigidPart>& parts) const;
   std::vector<Push> pushes_of(const Hit& hit, const FractureOutcome& outcome,
                               const std::vector<rigid::BodyId>& partners);
+  void meet_partners(const Hit& hit, const std::vector<Push>& pushes);
   void push_partners(const Hit& hit, const std::vector<Push>& pushes);
+  Momentum momentum_of(const std::vector<rigid::BodyId>& ids, const Vec3& about) const;
+  std::vector<Twist> twists_of(const FractureOutcome& outcome, const std::vector<RigidPart>& parts,
+                               const rigid::BodyState& state, const Momentum& delivered) const;
+  void remove(rigid::BodyId id);
+  std::vector<rigid::BodyId> add_pieces(const Live& parent, const FractureOutcome& outcome,
+                                        const std::vector<Piece>& pieces, const std::vector<RigidPart>& parts,
+                                        const Pose& pose, const std::vector<Twist>& twists);
   void hand_over(const Hit& hit, const FractureOutcome& outcome, const std::vector<rigid::BodyId>& partners,
                  FractureRecord& record);
   void note_coarse_grid(const Material& material, const FractureRecord& record);
@@ -80,7 +99,7 @@ class Simulation {
   std::map<rigid::BodyId, Live> live_;
   std::vector<double> original_volume_;  ///< by scene body
   std::vector<int> fracture_count_;      ///< by scene body, with all its fragments
-  int families_ = 0;
+  int families_ = 0, fragment_count_ = 0;
 };
 
 }  // namespace sunder::pipeline

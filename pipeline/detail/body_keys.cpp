@@ -100,10 +100,36 @@ void read_anchor(const Value& value, BodyDraft& draft) {
 }
 
 // Turns about the fixed world axes X, then Y, then Z.
-void read_rotation(const Value& value, BodyDraft& draft) {
+Quat rotation_of(const Value& value) {
   const Vec3 angles = value.vector() * (std::numbers::pi / 180);
-  draft.body.orientation = Eigen::AngleAxisd(angles.z(), Vec3::UnitZ()) * Eigen::AngleAxisd(angles.y(), Vec3::UnitY()) *
-                           Eigen::AngleAxisd(angles.x(), Vec3::UnitX());
+  return Eigen::AngleAxisd(angles.z(), Vec3::UnitZ()) * Eigen::AngleAxisd(angles.y(), Vec3::UnitY()) *
+         Eigen::AngleAxisd(angles.x(), Vec3::UnitX());
+}
+
+constexpr std::array<Key<Keyframe>, 3> kKeyframeKeys = {{
+    {"time", [](const Value& value, Keyframe& keyframe) { keyframe.time = value.non_negative(); }, true},
+    {"position", [](const Value& value, Keyframe& keyframe) { keyframe.pose.position = value.vector(); }, true},
+    {"rotation", [](const Value& value, Keyframe& keyframe) { keyframe.pose.orientation = rotation_of(value); }},
+}};
+
+// The first keyframe is where the body starts, so no time may be left over before it.
+void read_path(const Value& value, BodyDraft& draft) {
+  if (draft.body.motion != rigid::Motion::kinematic)
+    value.fail("only a body with motion = \"kinematic\" follows a path");
+  MotionPath& path = draft.body.path;
+  for (const Section& section : value.tables()) {
+    Keyframe keyframe;
+    if (!path.empty()) keyframe.pose.orientation = path.back().pose.orientation;
+    read_section<Keyframe>(section, kKeyframeKeys, keyframe);
+    if (path.empty() && keyframe.time > 0)
+      section.fail("the path has a gap before its first keyframe; where the body starts has time = 0");
+    if (!path.empty() && !(keyframe.time > path.back().time))
+      section.fail("its time has to be later than that of the keyframe before");
+    path.push_back(keyframe);
+  }
+  if (path.size() < 2) value.fail("a path has at least two keyframes");
+  draft.body.position = path.front().pose.position;
+  draft.body.orientation = path.front().pose.orientation;
 }
 
 void read_material(const Value& value, BodyDraft& draft) {
@@ -127,7 +153,7 @@ void read_motion(const Value& value, BodyDraft& draft) {
   if (draft.body.motion == Motion::fixed && moves) value.fail("a fixed body cannot have a velocity");
 }
 
-constexpr std::array<Key<BodyDraft>, 16> kBodyKeys = {{
+constexpr std::array<Key<BodyDraft>, 18> kBodyKeys = {{
     {"name", [](const Value& value, BodyDraft& draft) { draft.body.name = read_name(value); }, true},
     {"mesh", read_mesh, true},
     {"unit", read_unit},
@@ -138,12 +164,15 @@ constexpr std::array<Key<BodyDraft>, 16> kBodyKeys = {{
     {"repair", read_repair},
     {"anchor", read_anchor},
     {"position", [](const Value& value, BodyDraft& draft) { draft.body.position = value.vector(); }},
-    {"rotation", read_rotation},
+    {"rotation", [](const Value& value, BodyDraft& draft) { draft.body.orientation = rotation_of(value); }},
     {"velocity", [](const Value& value, BodyDraft& draft) { draft.body.velocity = value.vector(); }},
     {"angular_velocity", [](const Value& value, BodyDraft& draft) { draft.body.angular_velocity = value.vector(); }},
     {"motion", read_motion},
+    {"path", read_path},
     {"material", read_material, true},
     {"breakable", read_breakable},
+    {"minimum_impulse",
+     [](const Value& value, BodyDraft& draft) { draft.body.minimum_impulse = value.non_negative(); }},
 }};
 
 // Exactly one of size and height where a mesh has no size of its own; a mesh file may go without either.
@@ -153,6 +182,13 @@ void check_dimensions(const Section& section, const BodyDraft& draft) {
   if (sized || high || draft.from_file()) return;
   const bool wants_size = draft.primitive && !draft.primitive->by_height;
   section.fail_at("mesh", "mesh '" + draft.body.mesh.name + "' needs a " + (wants_size ? "'size'" : "'height'"));
+}
+
+// A path says where the body is and how it moves.
+void check_path(const Section& section) {
+  for (const char* key : {"position", "rotation", "velocity", "angular_velocity"})
+    if (section.has("path") && section.has(key))
+      section.fail_at(key, std::string("give '") + key + "' or 'path', not both");
 }
 
 // Generating a primitive is the one sure test of its dimensions, and takes no time.
@@ -200,6 +236,7 @@ SceneBody read_body(const std::filesystem::path& file, const toml::table& table,
   BodyDraft draft{.body = {}, .names = names};
   read_section(section, body_keys(), draft);
   check_dimensions(section, draft);
+  check_path(section);
   if (draft.primitive) check_primitive(section, draft);
   draft.body.line = section.line();
   return draft.body;

@@ -171,6 +171,15 @@ Vec3 Value::positive_vector() const {
   return result;
 }
 
+std::vector<Section> Value::tables() const {
+  const toml::array* array = node_->as_array();
+  if (!array || !array->is_array_of_tables()) fail_type("an array of tables [{ ... }, ...]");
+  std::vector<Section> sections;
+  for (const toml::node& entry : *array)
+    sections.push_back({*file_, *entry.as_table(), subject_ + ": " + std::to_string(sections.size() + 1)});
+  return sections;
+}
+
 void Section::fail_at(std::string_view key, const std::string& message) const {
   const toml::node* node = table.get(key);
   const int at = node ? static_cast<int>(node->source().begin.line) : line();

@@ -28,6 +28,8 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& ca
 /// Parses a file. Errors: ErrorKind::usage for a missing file and for a syntax error.
 toml::table parse_file(const std::filesystem::path& file);
 
+struct Section;
+
 /// One value with its place, for reading and for complaining about it.
 class Value {
  public:
@@ -48,6 +50,7 @@ class Value {
   double within(double low, double high) const;  ///< closed interval
   Vec3 vector() const;                           ///< three finite numbers
   Vec3 positive_vector() const;
+  std::vector<Section> tables() const;  ///< of an array of tables; messages number them from 1
 
   /// One of the named choices.
   template <class Choice>

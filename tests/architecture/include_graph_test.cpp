@@ -20,7 +20,7 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"geometry", {"core", "geometry"}},
     {"mpm", {"core", "geometry", "mpm"}},
     {"crack", {"core", "geometry", "crack"}},
-    {"rigid", {"core", "geometry", "rigid"}},
+    {"rigid", {"core", "geometry", "rigid", "tbb"}},
     {"validation", {"core", "geometry", "mpm", "crack", "rigid", "validation"}},
     {"pipeline", {"core", "geometry", "mpm", "crack", "rigid", "validation", "pipeline"}},
 };
@@ -32,7 +32,8 @@ const std::map<std::string, std::set<std::string>> libraries = {
     {"mpm", {"tbb"}},
     {"crack", {"voro++", "tbb"}},
     {"rigid",
-     {"btBulletDynamicsCommon.h", "btBulletCollisionCommon.h", "BulletCollision", "BulletDynamics", "LinearMath"}},
+     {"btBulletDynamicsCommon.h", "btBulletCollisionCommon.h", "BulletCollision", "BulletDynamics", "LinearMath",
+      "tbb"}},
     {"validation", {}},
     {"pipeline", {"CLI", "toml++", "nlohmann", "tiny_gltf.h", "tbb"}},
 };
