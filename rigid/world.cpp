@@ -175,6 +175,7 @@ World::Snapshot World::snapshot() const {
   for (const Body* body : impl_->list()) {
     snapshot.ids.push_back(body->id);
     snapshot.states.push_back(detail::state_of(*body));
+    snapshot.turns.push_back(body->turn);
     snapshot.rests.push_back({body->asleep, body->quiet_time, body->newborn});
   }
   snapshot.contacts = impl_->history.contacts;
@@ -194,6 +195,7 @@ void World::restore(const Snapshot& snapshot) {
     Body& body = *found->second.body;
     if (body.is_dynamic()) detail::set_asleep(body, snapshot.rests[i].asleep);
     detail::place(body, snapshot.states[i]);
+    detail::set_place(body, snapshot.states[i].pose.position, snapshot.turns[i]);
     body.quiet_time = snapshot.rests[i].quiet_time;
     body.newborn = snapshot.rests[i].newborn;
   }

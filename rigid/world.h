@@ -114,16 +114,16 @@ class World {
     double last_step = 0;  ///< length of the last sub-step [s]
     std::vector<BodyId> ids;
     std::vector<BodyState> states;
+    std::vector<Quat> turns;  ///< of the principal axes, which round differently from those of `states`
     std::vector<Rest> rests;
     std::vector<ContactMemory> contacts;
   };
   Snapshot snapshot() const;
-  /// Takes steps back. A body that was added or removed in between stays as it is. The step that follows is the one
-  /// that followed the snapshot, bit for bit from one repetition to the next. An orientation may differ by its last
-  /// digit from what it was.
+  /// Takes steps back. A body that was added or removed in between stays as it is. Without such bodies the steps that
+  /// follow are those that followed the snapshot, bit for bit.
   void restore(const Snapshot& snapshot);
 
-  /// The whole world as a value. `World(settings, state)` goes on like `world.restore(world.snapshot())` does.
+  /// The whole world as a value: `World(settings, world.state())` goes on like the world itself, bit for bit.
   struct State {
     std::vector<BodySetup> setups;  ///< by place in snapshot.ids
     Snapshot snapshot;

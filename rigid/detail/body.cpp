@@ -146,22 +146,25 @@ bool is_slow(const Body& body) {
 }
 
 BodyState state_of(const Body& body) {
-  const btTransform& place = body.object->getWorldTransform();
   BodyState state;
-  state.pose.position = to_eigen(place.getOrigin());
-  state.pose.orientation = (to_eigen(place.getRotation()) * body.principal.conjugate()).normalized();
+  state.pose.position = to_eigen(body.object->getWorldTransform().getOrigin());
+  state.pose.orientation = (body.turn * body.principal.conjugate()).normalized();
   state.twist.linear = to_eigen(body.object->getLinearVelocity());
   state.twist.angular = to_eigen(body.object->getAngularVelocity());
   return state;
 }
 
 void place(Body& body, const BodyState& state) {
-  const Quat orientation = (state.pose.orientation * body.principal).normalized();
-  body.object->setCenterOfMassTransform(btTransform(to_bullet(orientation), to_bullet(state.pose.position)));
+  set_place(body, state.pose.position, (state.pose.orientation * body.principal).normalized());
   const bool moves = body.motion != Motion::fixed;
   body.object->setLinearVelocity(moves ? to_bullet(state.twist.linear) : btVector3(0, 0, 0));
   body.object->setAngularVelocity(moves ? to_bullet(state.twist.angular) : btVector3(0, 0, 0));
   if (body.motion == Motion::kinematic) body.asleep = state.twist.linear.isZero(0) && state.twist.angular.isZero(0);
+}
+
+void set_place(Body& body, const Vec3& position, const Quat& turn) {
+  body.turn = turn;
+  body.object->setCenterOfMassTransform(btTransform(to_bullet(turn), to_bullet(position)));
 }
 
 Mat3 world_inertia(const Body& body) {

@@ -19,6 +19,7 @@ struct Body {
   Mat3 inertia = Mat3::Zero();        ///< body axes
   Vec3 moments = Vec3::Zero();        ///< principal moments of inertia [kg m^2]
   Quat principal = Quat::Identity();  ///< x_body = principal * x_principal
+  Quat turn = Quat::Identity();       ///< x_world = turn * x_principal: what Bullet's matrix is always made from
   double restitution = 0, friction = 0;
   double hit_time = std::numeric_limits<double>::infinity();  ///< of its first hit, after the start of the step [s]
   bool newborn = false;                                       ///< member of a family that has not yet taken a step
@@ -49,6 +50,8 @@ bool is_slow(const Body& body);
 
 BodyState state_of(const Body& body);
 void place(Body& body, const BodyState& state);
+/// Moves the principal axes there.
+void set_place(Body& body, const Vec3& position, const Quat& turn);
 Mat3 world_inertia(const Body& body);
 
 /// Box around all parts at the present place.

@@ -60,19 +60,24 @@ void rotate_freely(Quat& orientation, Vec3& angular, const Vec3& moments, double
 
 void integrate(Body& body, double time_step) {
   btRigidBody& object = *body.object;
-  btTransform place = object.getWorldTransform();
-  place.setOrigin(place.getOrigin() + object.getLinearVelocity() * time_step);
+  const Vec3 position =
+      to_eigen(object.getWorldTransform().getOrigin()) + to_eigen(object.getLinearVelocity()) * time_step;
+  Quat turn = body.turn;
   Vec3 angular = to_eigen(object.getAngularVelocity());
   if (!angular.isZero(0)) {
-    Quat orientation = to_eigen(place.getRotation());
     if (body.is_dynamic())
-      rotate_freely(orientation, angular, body.moments, time_step);
+      rotate_freely(turn, angular, body.moments, time_step);
     else
-      orientation = (turn_by(angular * time_step) * orientation).normalized();
-    place.setRotation(to_bullet(orientation));
+      turn = (turn_by(angular * time_step) * turn).normalized();
     object.setAngularVelocity(to_bullet(angular));
   }
-  object.setCenterOfMassTransform(place);
+  set_place(body, position, turn);
+}
+
+// The solver pushes overlaps apart by moving bodies, and knows their matrices alone.
+void take_over_turn(Body& body) {
+  const btTransform& place = body.object->getWorldTransform();
+  if (!(place.getBasis() == btMatrix3x3(to_bullet(body.turn)))) body.turn = to_eigen(place.getRotation()).normalized();
 }
 
 double deepest(const Manifold& manifold) {
@@ -297,7 +302,10 @@ void Dynamics::solve(const Step& step) {
   info_.m_timeStep = step.length;
   solver_.solveGroup(&objects[0], objects.size(), manifolds.size() > 0 ? &manifolds[0] : nullptr, manifolds.size(),
                      nullptr, 0, info_, nullptr, nullptr);
-  for (Body* body : step.bodies) body->object->clearForces();
+  for (Body* body : step.bodies) {
+    body->object->clearForces();
+    if (body->is_dynamic() && !body->asleep) take_over_turn(*body);
+  }
 }
 
 // Logs the impulses and keeps what the next sub-step starts from. The impulse of a hit is no guess for it.

@@ -1,8 +1,10 @@
 #include "rigid/world.h"
 
+#include <algorithm>
 #include <limits>
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include "core/error.h"
 #include "tests/rigid/bodies.h"
@@ -36,31 +38,70 @@ TEST(World, SameCallsGiveTheSameBits) {
   }
 }
 
-TEST(World, RestoredStepRepeatsBitByBit) {
+/// What a world does in so many steps: all impulses, and where everything is then.
+std::pair<std::uint64_t, std::vector<double>> deeds(World& world, int steps) {
+  std::vector<double> impulses;
+  for (int i = 0; i < steps; ++i)
+    for (const Impact& impact : world.step()) impulses.push_back(impact.impulse);
+  return {hash(world), impulses};
+}
+
+// At every stage of the heap: falling, hitting, resting, asleep.
+TEST(World, RestoredStepsAreThoseThatFollowedTheSnapshot) {
   World world = pile(30);
-  for (int i = 0; i < 150; ++i) world.step();
-  const World::Snapshot before = world.snapshot();
-  world.step();
-  world.restore(before);
-  EXPECT_EQ(world.time(), before.time);
-  for (std::size_t i = 0; i < before.ids.size(); ++i) {
-    const BodyState state = world.state(before.ids[i]);
-    EXPECT_EQ(state.pose.position, before.states[i].pose.position);
-    EXPECT_EQ(state.twist.linear, before.states[i].twist.linear);
-    EXPECT_LT(state.pose.orientation.angularDistance(before.states[i].pose.orientation), 1e-7);
-  }
-  const auto repeat = [&] {
+  for (int stage = 0; stage < 12; ++stage) {
+    const World::Snapshot before = world.snapshot();
+    const auto first = deeds(world, 120);
     world.restore(before);
-    std::vector<double> impulses;
-    for (int i = 0; i < 20; ++i)
-      for (const Impact& impact : world.step()) impulses.push_back(impact.impulse);
-    return std::pair(hash(world), impulses);
+    EXPECT_EQ(world.time(), before.time);
+    EXPECT_EQ(deeds(world, 120), first) << stage;
+  }
+}
+
+// A checkpoint: nothing that matters hides in the world that is left behind.
+TEST(World, AWorldMadeFromAStateGoesOnBitByBit) {
+  WorldSettings settings = on_ground();
+  World world = pile(30);
+  for (int stage = 0; stage < 12; ++stage) {
+    World copy(settings, world.state());
+    EXPECT_EQ(deeds(copy, 120), deeds(world, 120)) << stage;
+    EXPECT_EQ(copy.bodies(), world.bodies());
+  }
+  World copy(settings, world.state());
+  EXPECT_EQ(copy.add(box(Vec3::Constant(0.1), Vec3(9, 1, 0))), world.add(box(Vec3::Constant(0.1), Vec3(9, 1, 0))));
+}
+
+TEST(World, ThreadsDoNotMatter) {
+  const auto with = [](std::size_t threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    World world = pile(60);
+    return deeds(world, 300);
   };
-  const auto once = repeat();
-  EXPECT_EQ(once, repeat());
-  // However long the world went on in between.
-  for (int i = 0; i < 50; ++i) world.step();
-  EXPECT_EQ(once, repeat());
+  const auto one = with(1);
+  EXPECT_EQ(with(2), one);
+  EXPECT_EQ(with(4), one);
+}
+
+TEST(World, DrivenBodiesArriveWhereTheyAreTold) {
+  World world(on_ground());
+  BodySetup setup = box(Vec3(0.1, 0.05, 0.1), Vec3(0, 0.05, 0));
+  setup.motion = Motion::kinematic;
+  const BodyId lift = world.add(setup);
+  const BodyId rider = world.add(box(Vec3::Constant(0.05), Vec3(0, 0.15, 0)));
+  run(world, 3);
+  Pose target;
+  for (int i = 1; i <= 240; ++i) {
+    target.position = Vec3(0, 0.05 + 0.3 * i / 240.0, 0);
+    target.orientation = Quat(Eigen::AngleAxisd(0.004 * i, Vec3::UnitY()));
+    world.drive(lift, target);
+    world.step();
+    ASSERT_LT((world.state(lift).pose.position - target.position).norm(), 1e-12) << i;
+    ASSERT_LT(world.state(lift).pose.orientation.angularDistance(target.orientation), 1e-7) << i;
+  }
+  world.drive(lift, target);
+  run(world, 1);
+  EXPECT_NEAR(world.state(rider).pose.position.y(), 0.45, 2e-3);
+  EXPECT_THROW(world.drive(rider, target), Error);
 }
 
 TEST(World, RestoreLeavesNewAndRemovedBodiesAlone) {
@@ -142,6 +183,42 @@ TEST(World, MovingTheSupportWakesWhatRestedOnIt) {
   world.set_state(platform, up);
   run(world, 1);
   EXPECT_NEAR(world.state(rider).pose.position.y(), 0.25, 2e-3);
+}
+
+// Asleep they stand like fixed bodies, but a hit goes through the whole row within a step.
+TEST(World, AHitWakesARowOfSleepers) {
+  World world(on_ground(1, 0));
+  std::vector<BodyId> row;
+  for (int i = 0; i < 5; ++i) {
+    BodySetup setup = box(Vec3::Constant(0.05), Vec3(0.1 * i, 0.05, 0));
+    setup.friction = 0;
+    row.push_back(world.add(setup));
+  }
+  run(world, 2);
+  BodySetup hammer = box(Vec3::Constant(0.05), Vec3(-0.2, 0.05, 0));
+  hammer.friction = 0;
+  hammer.twist.linear = Vec3(3, 0, 0);
+  world.add(hammer);
+  run(world, 0.2);
+  double momentum = 0;
+  for (BodyId id : world.bodies()) momentum += world.mass(id) * world.state(id).twist.linear.x();
+  EXPECT_NEAR(momentum, hammer.mass * 3, 0.01 * hammer.mass * 3);
+  EXPECT_GT(world.state(row.back()).twist.linear.x(), 0.1);
+}
+
+TEST(World, OneRollingBallDoesNotKeepAHeapAwake) {
+  World world = pile(20);
+  run(world, 6);
+  BodySetup marble = ball(0.002, Vec3(0, 0.5, 0));
+  const BodyId id = world.add(marble);
+  const auto asleep = [&] {
+    const World::Snapshot now = world.snapshot();
+    return std::count_if(now.rests.begin(), now.rests.end(), [](const auto& rest) { return rest.asleep; });
+  };
+  const auto before = asleep();
+  EXPECT_GE(before, 15);
+  run(world, 0.5);
+  EXPECT_GE(asleep(), before - 2) << "a marble of 2 mm woke them; it is at " << world.state(id).pose.position.y();
 }
 
 TEST(World, FreeBodiesNeverFallAsleep) {
