@@ -34,7 +34,6 @@ FractureInput Simulation::fracture_input(const Hit& hit, std::vector<rigid::Body
   FractureInput input;
   input.mesh = piece.mesh;
   input.material = live.origin->material;
-  if (!scene_.effects.strength_scatter) input.material.weibull_modulus = 0;
   for (const rigid::Impact& impact : hit.impacts) {
     const auto known = std::find(partner_ids.begin(), partner_ids.end(), impact.body_b);
     mpm::Load load;
@@ -59,20 +58,13 @@ FractureInput Simulation::fracture_input(const Hit& hit, std::vector<rigid::Body
     input.partners.push_back({yields ? effective_mass(world_part(impact.body_b), impact.arm_b, impact.normal)
                                      : std::numeric_limits<double>::infinity()});
   }
-  input.solve.damage = scene_.fracture.damage == DamageModel::front ? mpm::DamageModel::front : mpm::DamageModel::local;
-  input.solve.load = scene_.fracture.load == LoadModel::contact ? mpm::LoadModel::contact : mpm::LoadModel::prescribed;
-  input.solve.two_fields = scene_.fracture.velocity_fields == 2;
-  input.solve.spline = scene_.fracture.spline;
-  input.solve.scatter_length = scene_.fracture.scatter_length;
-  input.crack = {scene_.fracture.node_spacing,  scene_.fracture.debris_size,   scene_.effects.hairlines,
-                 scene_.effects.surface_detail, scene_.fracture.level_set_cut, scene_.fracture.voxel_size};
   input.seed = input.solve.seed =
       random_word(scene_.seed, static_cast<std::uint64_t>(piece.id), report_.fractures.size());
   const double share = piece.volume / original_volume_[static_cast<std::size_t>(live.origin_index)];
   input.own = live.particles;
   input.particles =
       static_cast<int>(settings_of(scene_.quality).particles * std::clamp(share, fragment_particle_share, 1.0));
-  return input;
+  return as_asked(std::move(input), scene_, effects_);
 }
 
 void Simulation::solve(const Hit& hit, Progress& progress) {
@@ -87,6 +79,7 @@ void Simulation::solve(const Hit& hit, Progress& progress) {
   record.body = piece_of(live).name;
   record.time = world_.time();
   record.impulse = hit.impulse;
+  if (piece_of(live).generation > 0) record.effects[Effect::secondary_fracture] = record.effects[Effect::fracture];
   account(record, outcome);
   note_coarse_grid(input.material, record);
   if (outcome.pieces.size() >= 2)

@@ -4,10 +4,10 @@
 
 #include <Eigen/Cholesky>
 
+#include "core/stopwatch.h"
 #include "geometry/mass_properties.h"
 #include "geometry/sample.h"
 #include "pipeline/handover.h"
-#include "pipeline/stopwatch.h"
 
 namespace sunder::pipeline {
 namespace {

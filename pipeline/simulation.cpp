@@ -4,11 +4,12 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/optional_effects.h"
+#include "core/stopwatch.h"
 #include "geometry/convex_parts.h"
 #include "geometry/primitives.h"
 #include "pipeline/detail/piece_mesh.h"
 #include "pipeline/quality.h"
-#include "pipeline/stopwatch.h"
 
 namespace sunder::pipeline {
 namespace {
@@ -62,6 +63,9 @@ Simulation::Simulation(const Scene& scene, const RunOptions& options, Progress& 
     progress.checkpoint("setup", static_cast<double>(b) / static_cast<double>(scene.bodies.size()));
     place(scene.bodies[b], static_cast<int>(b));
   }
+  std::vector<double> sizes;
+  for (const Piece& piece : sequence_.pieces) sizes.push_back(size_of(piece));
+  effects_ = plan_effects(scene, sizes);
   require_no_overlap();
 }
 
@@ -125,8 +129,8 @@ void Simulation::require_no_overlap() const {
 bool Simulation::may_break(const Live& live, double now) const {
   const Piece& piece = piece_of(live);
   const std::size_t origin = static_cast<std::size_t>(live.origin_index);
-  if (!scene_.effects.fracture || !live.origin->breakable || !live.origin->material.breakable) return false;
-  if (piece.generation > 0 && !scene_.effects.refracture) return false;
+  if (!live.origin->breakable || !live.origin->material.breakable) return false;
+  if (piece.generation > 0 && !(with_optional_effects && effects_.runs(Effect::secondary_fracture))) return false;
   if (fracture_count_[origin] >= scene_.fracture.maximum_fractures) return false;
   if (piece.volume < scene_.fracture.minimum_volume * original_volume_[origin]) return false;
   const double delay = scene_.fracture.refracture_delay;
@@ -216,7 +220,7 @@ std::vector<rigid::Impact> Simulation::step_world() {
 }
 
 void Simulation::step(Progress& progress) {
-  if (!scene_.effects.fracture) {
+  if (!effects_.runs(Effect::fracture)) {
     step_world();
     return;
   }
