@@ -5,6 +5,8 @@
 #include <map>
 #include <string>
 
+#include "core/optional_effects.h"
+#include "core/stopwatch.h"
 #include "crack/detail/classify.h"
 #include "crack/detail/debris.h"
 #include "crack/detail/medial.h"
@@ -178,8 +180,10 @@ Extraction extract(const DamageField& field, const Box& domain, const Settings& 
   const Crushed crushed = find_crushed(raster, settings.node_damage);
   result.lump_share = lump_share(raster.lattice, crushed, lump_depth * field.cell_size / spacing);
   IslandRequest islands{smallest_island(raster.lattice, settings), {}};
-  if (settings.debris_size > 0)
+  if (with_optional_effects && settings.debris_size > 0) {
+    const Stopwatch watch(result.debris_seconds);
     islands.seeds = debris_seeds(raster.lattice, crushed, settings.debris_size / spacing, settings.seed);
+  }
   const double neck = settings.close_necks ? settings.neck_radius * field.cell_size / spacing : 0;
   auto [pieces, neck_radius] = choose_partition(raster.lattice, crushed.sound, islands, neck);
   if (neck_radius > 0) result.neck_radius_used = settings.neck_radius;

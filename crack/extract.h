@@ -69,6 +69,7 @@ struct Extraction {
   double effective_count = 1;         ///< 1 / sum over regions of (share in the nodes of all islands)^2
   double neck_radius_used = 0;        ///< 0 or settings.neck_radius
   int debris = 0;                     ///< regions that subdivide crushed lumps
+  double debris_seconds = 0;          ///< wall-clock, of choosing where they are
   int retries = 0;                    ///< times the sites had to be jittered anew
 };
 

@@ -25,7 +25,8 @@ struct StepConstants {
   double origin[3] = {0, 0, 0};  ///< of node (0, 0, 0) [m]
   double particle_volume = 0, particle_mass = 0;
   double shear_modulus = 0, lame_lambda = 0;
-  double viscosity = 0;  ///< of undamaged material [Pa s]
+  double viscosity = 0;      ///< of undamaged material [Pa s]
+  bool books_energy = true;  ///< viscous work and what damage dissipates are added up
 };
 
 /// A point that left its block since points were last sorted, on its way to the grid: momentum at the node `cell` + 1

@@ -8,6 +8,7 @@
 #include <tbb/parallel_for.h>
 
 #include "core/error.h"
+#include "core/optional_effects.h"
 #include "mpm/detail/point_access.h"
 #include "mpm/rankine.h"
 
@@ -42,6 +43,7 @@ Continuum::Continuum(const std::vector<Vec3>& points, double particle_volume, co
   constants_.shear_modulus = material.shear_modulus();
   constants_.lame_lambda = material.lame_lambda();
   constants_.viscosity = settings.viscosity;
+  constants_.books_energy = settings.books_energy;
   for (std::size_t p = 0; p < points.size(); ++p) {
     slot_[p] = static_cast<int>(p);
     PointState state;
@@ -121,7 +123,7 @@ void Continuum::gather(const Stray& stray, Node sums[4]) const {
       for (int k = 0; k < width; ++k) {
         const auto [b, local] = find_node({stray.cell[0] + i, stray.cell[1] + j, stray.cell[2] + k});
         if (b < 0) continue;
-        const bool second = cracked_ && behind(b, local, material);
+        const bool second = with_optional_effects && cracked_ && behind(b, local, material);
         const int block = second ? blocks_[static_cast<std::size_t>(b)].planes : b;
         const Node& node =
             (second ? second_nodes_
@@ -155,7 +157,7 @@ void Continuum::scatter(const Stray& stray) {
   const int b = make_block(block);
   make_blocks_above(block);
   const Vec3 material(stray.material_position[0], stray.material_position[1], stray.material_position[2]);
-  unsigned long long side = cracked_ ? sides(stray.cell, material) : 0;
+  unsigned long long side = with_optional_effects && cracked_ ? sides(stray.cell, material) : 0;
   Block& home = blocks_[static_cast<std::size_t>(b)];
   Node* const tiles[2] = {fresh_tile(home.tile, home.tile_live, tiles_),
                           side ? fresh_tile(home.second_tile, home.second_live, second_tiles_) : nullptr};
@@ -194,7 +196,7 @@ void Continuum::run(void (*pass)(const StepConstants&, const StepHandler&, Block
         work.velocity[n] = above < 0 ? nullptr : nodes_.data() + static_cast<std::size_t>(above) * block_nodes;
       }
       work.tile = tiles_.data() + static_cast<std::size_t>(block.tile) * tile_size;
-      if (block.second_tile >= 0) {
+      if (with_optional_effects && block.second_tile >= 0) {
         for (int n = 0; n < 8; ++n) {
           const int above = find_block(plus(block.at, n >> 2, n >> 1 & 1, n & 1));
           const int planes = above < 0 ? -1 : blocks_[static_cast<std::size_t>(above)].planes;
@@ -258,7 +260,7 @@ void Continuum::start(const std::vector<Motion>& motion) {
 void Continuum::advance(double time) {
   if (!sorted_)
     sort();
-  else if (cracked_ && ++steps_since_division_ >= steps_between_divisions)
+  else if (with_optional_effects && cracked_ && ++steps_since_division_ >= steps_between_divisions)
     divide(faces_);
   constants_.time = time;
   run(kernels_.step, nullptr);
@@ -301,10 +303,10 @@ void Continuum::update_grid() {
             if (below < 0) continue;
             const Block& from = blocks_[static_cast<std::size_t>(below)];
             if (from.tile_live) sum.tile[n] = tiles_.data() + static_cast<std::size_t>(from.tile) * tile_size;
-            if (from.second_live)
+            if (with_optional_effects && from.second_live)
               sum.second_tile[n] = second_tiles_.data() + static_cast<std::size_t>(from.second_tile) * tile_size;
           }
-          if (blocks_[b].planes >= 0) {
+          if (with_optional_effects && blocks_[b].planes >= 0) {
             const std::size_t first = static_cast<std::size_t>(blocks_[b].planes) * block_nodes;
             sum.second_nodes = second_nodes_.data() + first;
             sum.planes = planes_.data() + first;

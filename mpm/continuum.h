@@ -21,6 +21,7 @@ struct ContinuumSettings {
   double viscosity = 0;        ///< of undamaged material [Pa s]
   Vec3 anchor = Vec3::Zero();  ///< some node lies here [m]
   Spline spline = Spline::quadratic;
+  bool books_energy = true;  ///< dissipation is added up: PointState::dissipated, Continuum::viscous_work()
   InstructionSet instructions = best_instruction_set();
 };
 
@@ -101,6 +102,8 @@ class Continuum {
   /// its rim; particles behind the plane are in the second field there. `friction`: Coulomb's coefficient between the
   /// fields. Between update_grid() and advance().
   void open(const std::vector<CrackFace>& faces, double friction);
+  /// Some crack was opened: steps are made with two fields beside it.
+  bool divided() const { return cracked_; }
 
   /// Points without a crack whose largest principal stress exceeded their threshold in the last advance().
   const std::vector<int>& candidates() const { return candidates_; }

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/optional_effects.h"
 #include "mpm/continuum.h"
 #include "mpm/detail/point_access.h"
 
@@ -148,7 +149,7 @@ void Continuum::sort() {
   candidate_slots_.resize(chunks_.size() * chunk_size);
   held_nodes_blocks_ = 0;
   sorted_ = true;
-  if (cracked_) divide(faces_);
+  if (with_optional_effects && cracked_) divide(faces_);
 }
 
 void Continuum::carry_velocities(const std::vector<Block>& blocks, const std::vector<Node>& nodes,
@@ -161,7 +162,7 @@ void Continuum::carry_velocities(const std::vector<Block>& blocks, const std::ve
     if (now < 0) continue;
     std::copy_n(nodes.begin() + static_cast<std::ptrdiff_t>(b) * block_nodes, block_nodes,
                 nodes_.begin() + static_cast<std::ptrdiff_t>(now) * block_nodes);
-    if (blocks[b].planes < 0) continue;
+    if (!with_optional_effects || blocks[b].planes < 0) continue;
     add_planes(now);
     std::copy_n(second_nodes.begin() + static_cast<std::ptrdiff_t>(blocks[b].planes) * block_nodes, block_nodes,
                 second_nodes_.end() - block_nodes);
@@ -225,7 +226,8 @@ void Continuum::hold_nodes() {
     };
     hold(nodes_[static_cast<std::size_t>(at.node)]);
     const int planes = blocks_[static_cast<std::size_t>(at.node / block_nodes)].planes;
-    if (planes >= 0) hold(second_nodes_[static_cast<std::size_t>(planes * block_nodes + at.node % block_nodes)]);
+    if (with_optional_effects && planes >= 0)
+      hold(second_nodes_[static_cast<std::size_t>(planes * block_nodes + at.node % block_nodes)]);
   }
 }
 

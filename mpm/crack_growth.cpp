@@ -6,6 +6,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "core/optional_effects.h"
 #include "mpm/strength_scatter.h"
 
 namespace sunder::mpm {
@@ -34,13 +35,22 @@ Softening scattered(const Softening& law, double factor) {
   return {f * law.strength, ratio / (1 - ratio), law.fracture_energy};
 }
 
+/// Factors of the points' strengths; counts those that differ from one.
+std::vector<double> factors_of_strength(const Material& material, const SolveSettings& settings,
+                                        const std::vector<Vec3>& points, double cell_size, Effort& scattered) {
+  if (!with_optional_effects || material.weibull_modulus <= 0) return std::vector<double>(points.size(), 1.0);
+  const Stopwatch watch(scattered.seconds);
+  scattered.count = static_cast<long>(points.size());
+  return strength_scatter(points, material.weibull_modulus, settings.scatter_length.value_or(3 * cell_size),
+                          settings.seed);
+}
+
 }  // namespace
 
 CrackGrowth::CrackGrowth(const Material& material, const SolveSettings& settings, const std::vector<Vec3>& points,
                          Continuum& body)
     : law_(law_of(material, settings, body.cell_size())),
-      nucleation_strength_(strength_scatter(points, material.weibull_modulus,
-                                            settings.scatter_length.value_or(3 * body.cell_size()), settings.seed)),
+      nucleation_strength_(factors_of_strength(material, settings, points, body.cell_size(), flaws_)),
       reach_(settings.front.shield_radius * body.cell_size()),
       memory_(points.size()),
       fronts_(box_of(points), body.cell_size(), material.p_wave_speed(), settings.front),

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/stopwatch.h"
 #include "mpm/continuum.h"
 #include "mpm/front.h"
 #include "mpm/rankine.h"
@@ -29,7 +30,8 @@ class CrackGrowth {
 
   /// The law at crack fronts (front) or everywhere but for scatter (local).
   const Softening& law() const { return law_; }
-  long nuclei() const { return nuclei_; }  ///< cracks that started in virgin material
+  long nuclei() const { return nuclei_; }           ///< cracks that started in virgin material
+  const Effort& scatter() const { return flaws_; }  ///< points whose strength was scattered
 
  private:
   void add_front(int id, const Vec3& normal, double time, Continuum& body);
@@ -43,6 +45,7 @@ class CrackGrowth {
   void decide(const std::vector<Asked>& asked, double time, Continuum& body);
 
   const Softening law_;
+  Effort flaws_;
   std::vector<double> nucleation_strength_;
   const double reach_;  ///< within which fronts have a say [m]
   /// What a point was last told.

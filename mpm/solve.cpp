@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/optional_effects.h"
 #include "mpm/contact_load.h"
 #include "mpm/crack_growth.h"
 #include "mpm/rankine.h"
@@ -108,6 +109,7 @@ ContinuumSettings continuum_settings(const SolveInput& input, const SolveSetting
   result.viscosity = settings.viscosity * input.material.density * scales.wave_speed * scales.cell_size;
   result.anchor = box_of(input.points).min();
   result.spline = settings.spline;
+  result.books_energy = settings.energy_ledger;
   return result;
 }
 
@@ -115,17 +117,19 @@ class Solver {
  public:
   Solver(const SolveInput& input, const SolveSettings& settings);
 
-  void step();
+  void advance();
   /// Nothing while it goes on.
   std::optional<StopReason> finished() const;
   double fraction() const { return std::min(1.0, time_ / latest_end_); }
   SolveResult result(StopReason stop);
 
  private:
+  void step();
   void follow();
   void push();
   void open_cracks();
   void book_work();
+  EnergyLedger ledger(const std::vector<Motion>& motion) const;
 
   const SolveInput& input_;
   const SolveSettings settings_;
@@ -140,6 +144,7 @@ class Solver {
   Vec3 impulse_ = Vec3::Zero(), travel_ = Vec3::Zero();  ///< of the body as a whole
   double time_ = 0, last_failure_ = 0, contact_duration_ = 0, latest_end_ = 0, work_ = 0, impact_energy_ = 0;
   long steps_ = 0;
+  Effort two_field_steps_;
 };
 
 Solver::Solver(const SolveInput& input, const SolveSettings& settings)
@@ -186,7 +191,7 @@ void Solver::push() {
 }
 
 void Solver::open_cracks() {
-  if (settings_.two_fields && steps_ % steps_between_openings == 0)
+  if (with_optional_effects && settings_.two_fields && steps_ % steps_between_openings == 0)
     body_.open(cracks_.new_faces(body_), settings_.crack_friction);
 }
 
@@ -213,6 +218,13 @@ void Solver::step() {
   ++steps_;
 }
 
+void Solver::advance() {
+  if (!with_optional_effects || !body_.divided()) return step();
+  const Stopwatch watch(two_field_steps_.seconds);
+  ++two_field_steps_.count;
+  step();
+}
+
 std::optional<StopReason> Solver::finished() const {
   if (steps_ >= settings_.most_steps) return StopReason::steps;
   if (static_cast<double>(body_.failures()) >= settings_.most_damaged_share * body_.size()) return StopReason::damage;
@@ -222,12 +234,25 @@ std::optional<StopReason> Solver::finished() const {
   return {};
 }
 
+EnergyLedger Solver::ledger(const std::vector<Motion>& motion) const {
+  const StoredEnergy stored = body_.energy(motion);
+  EnergyLedger energy{0, stored.kinetic, stored.tension, stored.compression, 0, body_.viscous_work()};
+  for (int id = 0; id < body_.size(); ++id) energy.fracture += body_.point(id).dissipated * scales_.particle_volume;
+  for (const ContactLoad& load : loads_) energy.work += load.work();
+  for (std::size_t n = 0; n < input_.held.size(); ++n)
+    energy.work += body_.held_impulses()[n].dot(input_.held[n].velocity);
+  return energy;
+}
+
 SolveResult Solver::result(StopReason stop) {
   const std::vector<Motion> motion = body_.finish();
   SolveResult r;
   r.stop = stop;
-  const StoredEnergy stored = body_.energy(motion);
-  r.energy = {0, stored.kinetic, stored.tension, stored.compression, 0, body_.viscous_work()};
+  if (with_optional_effects && settings_.energy_ledger) {
+    const Stopwatch watch(r.evaluated_ledgers.seconds);
+    r.energy = ledger(motion);
+    r.evaluated_ledgers.count = 1;
+  }
   const double moment = body_.particle_mass() * spline_moment(settings_.spline) * scales_.cell_size * scales_.cell_size;
   for (int id = 0; id < body_.size(); ++id) {
     const Motion& m = motion[static_cast<std::size_t>(id)];
@@ -235,16 +260,10 @@ SolveResult Solver::result(StopReason stop) {
     const Mat3& c = m.affine_velocity;
     const Vec3 spin(c(2, 1) - c(1, 2), c(0, 2) - c(2, 0), c(1, 0) - c(0, 1));
     r.particles.push_back({p.displacement, m.velocity, moment * spin, p.damage, p.damage_time});
-    r.energy.fracture += p.dissipated * scales_.particle_volume;
     r.damaged_share += p.damage >= cracked;
   }
   r.damaged_share /= static_cast<double>(body_.size());
-  for (const ContactLoad& load : loads_) {
-    r.loads.push_back(load.result());
-    r.energy.work += load.work();
-  }
-  for (std::size_t n = 0; n < input_.held.size(); ++n)
-    r.energy.work += body_.held_impulses()[n].dot(input_.held[n].velocity);
+  for (const ContactLoad& load : loads_) r.loads.push_back(load.result());
   r.cell_size = scales_.cell_size;
   r.time_step = scales_.time_step;
   r.duration = time_;
@@ -255,6 +274,8 @@ SolveResult Solver::result(StopReason stop) {
   r.failures = body_.failures();
   r.cracks = cracks_.damage(body_);
   r.nuclei = cracks_.nuclei();
+  r.two_field_steps = two_field_steps_;
+  r.scattered_points = cracks_.scatter();
   r.crushed_resets = body_.resets();
   r.memory = body_.memory();
   r.band_width = settings_.band_width * scales_.cell_size;
@@ -286,7 +307,7 @@ SolveResult solve(const SolveInput& input, const SolveSettings& settings, Progre
   std::optional<StopReason> stop;
   for (long n = 0; !(stop = solver.finished()); ++n) {
     if (n % 16 == 0) progress.checkpoint("solve", solver.fraction());
-    solver.step();
+    solver.advance();
   }
   return solver.result(*stop);
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "core/stopwatch.h"
 #include "core/types.h"
 #include "mpm/continuum.h"
 #include "mpm/hertz_contact.h"
@@ -66,6 +67,7 @@ struct SolveSettings {
   Spline spline = Spline::quadratic;
   bool two_fields = false;      ///< material on the two sides of a crack front's path moves apart (front rules only)
   double crack_friction = 0.3;  ///< Coulomb's coefficient between them
+  bool energy_ledger = true;    ///< book where the work of the loads goes
   std::uint64_t seed = 1;
 };
 
@@ -123,13 +125,17 @@ struct SolveResult {
   double particle_mass = 0;  ///< [kg]
   double work = 0;           ///< of the loads on the body less its rigid translation, largest value reached [J]
   double impact_energy = 0;  ///< kinetic, of body and partners in their common frame: 1/2 m_s v^2 for one partner [J]
-  EnergyLedger energy;
-  double damaged_share = 0;  ///< particles with damage >= 0.95 / particles
-  long failures = 0;         ///< particles that failed in this solve
-  PriorDamage cracks;        ///< for a later solve of the same particles
-  long nuclei = 0;           ///< cracks that started in virgin material (front rules)
-  long crushed_resets = 0;   ///< particles whose deformation left the range of the material law and was reset, counted
-  std::size_t memory = 0;    ///< of particles and grid [bytes]
+  std::optional<EnergyLedger> energy;  ///< not set: settings.energy_ledger is off
+  double damaged_share = 0;            ///< particles with damage >= 0.95 / particles
+  long failures = 0;                   ///< particles that failed in this solve
+  PriorDamage cracks;                  ///< for a later solve of the same particles
+  long nuclei = 0;                     ///< cracks that started in virgin material (front rules)
+  long crushed_resets = 0;  ///< particles whose deformation left the range of the material law and was reset, counted
+  std::size_t memory = 0;   ///< of particles and grid [bytes]
+
+  Effort two_field_steps;    ///< steps that were made with two fields; none before a crack opened
+  Effort scattered_points;   ///< whose strength was scattered
+  Effort evaluated_ledgers;  ///< of energy, at the end; what steps add up is in their own time
 
   // What the resolution does to the material (band l_ch against l_max = 2 E G_f / sigma_f^2).
   double band_width = 0, admissible_length = 0;  ///< [m]

@@ -21,6 +21,22 @@ std::string fragment_name(const std::string& body, int number) {
   return body + digits;
 }
 
+/// Each crack has two faces [m^2].
+double crack_area(const FractureOutcome& outcome) {
+  double area = 0;
+  for (const BrokenPiece& piece : outcome.pieces) {
+    const geometry::TriangleMesh& mesh = piece.fragment.mesh;
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+      if (piece.fragment.source_face[f] >= 0) continue;
+      const auto corner = [&](int k) {
+        return mesh.vertices[static_cast<std::size_t>(mesh.faces[f][static_cast<std::size_t>(k)])];
+      };
+      area += (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm() / 4;
+    }
+  }
+  return area;
+}
+
 RigidPart rotated(const RigidPart& part, const Quat& q) {
   const Mat3 r = q.toRotationMatrix();
   return {part.mass, r * part.centre, r * part.inertia * r.transpose()};
@@ -38,7 +54,6 @@ FractureInput Simulation::fracture_input(const Hit& hit, std::size_t number,
   FractureInput input;
   input.mesh = piece.mesh;
   input.material = live.origin->material;
-  if (!scene_.effects.strength_scatter) input.material.weibull_modulus = 0;
   for (const rigid::Impact& impact : hit.impacts) {
     const auto known = std::find(partner_ids.begin(), partner_ids.end(), impact.body_b);
     mpm::Load load;
@@ -63,19 +78,12 @@ FractureInput Simulation::fracture_input(const Hit& hit, std::size_t number,
     input.partners.push_back({yields ? effective_mass(world_part(impact.body_b), impact.arm_b, impact.normal)
                                      : std::numeric_limits<double>::infinity()});
   }
-  input.solve.damage = scene_.fracture.damage == DamageModel::front ? mpm::DamageModel::front : mpm::DamageModel::local;
-  input.solve.load = scene_.fracture.load == LoadModel::contact ? mpm::LoadModel::contact : mpm::LoadModel::prescribed;
-  input.solve.two_fields = scene_.fracture.velocity_fields == 2;
-  input.solve.spline = scene_.fracture.spline;
-  input.solve.scatter_length = scene_.fracture.scatter_length;
-  input.crack = {scene_.fracture.node_spacing,  scene_.fracture.debris_size,   scene_.effects.hairlines,
-                 scene_.effects.surface_detail, scene_.fracture.level_set_cut, scene_.fracture.voxel_size};
   input.seed = input.solve.seed = random_word(scene_.seed, static_cast<std::uint64_t>(piece.id), number);
   input.own = live.particles;
   input.particles = static_cast<int>(settings_of(scene_.quality).particles *
                                      std::clamp(share_of(live), fragment_particle_share, 1.0));
   input.nearly_whole = scene_.fracture.nearly_whole_volume;
-  return input;
+  return as_asked(std::move(input), scene_, effects_);
 }
 
 /// The hits are of bodies that do not touch each other, so their solves run side by side; what comes of them is settled
@@ -99,6 +107,7 @@ void Simulation::settle(const Hit& hit, const FractureInput& input, const Fractu
   record.body = piece_of(live).name;
   record.time = world_.time();
   record.impulse = hit.impulse;
+  if (piece_of(live).generation > 0) record.effects[Effect::secondary_fracture] = record.effects[Effect::fracture];
   account(record, outcome);
   note_coarse_grid(input.material, record);
   if (outcome.pieces.size() >= 2)
@@ -257,7 +266,8 @@ void Simulation::hand_over(const Hit& hit, const FractureOutcome& outcome, const
   push_partners(hit, pushes);
   std::vector<Twist> twists = twists_of(outcome, parts, state, delivered);
   // What the cracks took is no longer there to move the pieces.
-  const double available = record.kinetic_before - energy_of(partners) - outcome.solve.energy.fracture;
+  const double crack_energy = parent.origin->material.fracture_energy * crack_area(outcome);
+  const double available = record.kinetic_before - energy_of(partners) - crack_energy;
   if (free && kinetic_energy(parts, twists) > available) {
     twists = with_energy_limit(parts, twists, available);
     ++report_.fallbacks["fragment_energy_limited"];

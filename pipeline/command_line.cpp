@@ -83,15 +83,41 @@ int run_command(const RunArguments& arguments, LogFormat log) {
   return result.report.interrupted ? static_cast<int>(ErrorKind::interrupted) : 0;
 }
 
-int check_command(const std::string& file) {
-  const Scene scene = load_scene(file);
+nlohmann::ordered_json plan_json(const EffectPlan& plan) {
+  nlohmann::ordered_json effects = nlohmann::ordered_json::array();
+  for (const EffectInfo& info : effect_registry())
+    effects.push_back({{"name", info.name},
+                       {"asked", name_of(plan.settings.asked[info.effect])},
+                       {"runs", plan.runs(info.effect)},
+                       {"why", plan.decisions[info.effect].why}});
+  return {{"effects", effects}};
+}
+
+void say_plan(const EffectPlan& plan) {
+  for (const EffectInfo& info : effect_registry()) {
+    const Decision& decision = plan.decisions[info.effect];
+    char line[64];
+    std::snprintf(line, sizeof line, "%-20s %-4s %-7s  ", std::string(info.name).c_str(),
+                  name_of(plan.settings.asked[info.effect]), decision.runs ? "runs" : "skipped");
+    std::cout << line << decision.why << "\n";
+  }
+}
+
+int check_command(const std::string& file, const std::optional<Quality>& quality, bool json) {
+  Scene scene = load_scene(file);
+  if (quality) scene.quality = *quality;
+  std::vector<double> sizes;
   for (const SceneBody& body : scene.bodies) {
     const BodyMesh source = body_mesh(body);
+    sizes.push_back(geometry::bounds(source.mesh).sizes().maxCoeff());
+    if (json) continue;
     std::cout << body.name << ": " << source.mesh.faces.size() << " faces, " << body.material.name
-              << (body.breakable && body.material.breakable && scene.effects.fracture ? "" : ", does not break")
-              << "\n";
+              << (body.breakable && body.material.breakable ? "" : ", does not break") << "\n";
     for (const std::string& step : source.repairs) std::cout << "  repair: " << step << "\n";
   }
+  const EffectPlan plan = plan_effects(scene, sizes);
+  if (json) return std::cout << plan_json(plan).dump(2) << std::endl, 0;
+  say_plan(plan);
   std::cout << "scene is valid: " << scene.duration << " s at " << scene.frame_rate << " frames/s, quality "
             << name_of(scene.quality) << std::endl;
   return 0;
@@ -169,13 +195,20 @@ void add_still_options(CLI::App& app, StillOptions& options, std::string& out) {
   app.add_option("--out", out, "Folder for the results (default: out/<name>)");
   app.add_option("--unit", options.load.metres_per_unit, "Metres per unit of the files")->check(CLI::PositiveNumber);
   app.add_option("--seed", options.seed, "Of everything random");
-  app.add_option("--detail", options.crack.detail, "Look of the crack faces")->check(CLI::IsMember(looks));
-  app.add_option("--hairlines", options.crack.hairline_width, "Width of gaps that show partial cracks [m]")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--debris", options.crack.debris_size, "Crushed lumps fall into pieces of this size [m]")
-      ->check(CLI::PositiveNumber);
-  app.add_flag("--level-set", options.crack.level_set, "Cut on a voxel grid instead of exactly");
-  app.add_option("--voxel", options.crack.voxel_size, "Voxel size of that grid [m]")->check(CLI::PositiveNumber);
+  const auto switch_on = [&options](Effect effect) {
+    return [&options, effect](const std::string&) { options.effects.asked[effect] = Ask::on; };
+  };
+  app.add_option("--detail", options.effects.surface_look, "Look of the crack faces")
+      ->check(CLI::IsMember(looks))
+      ->each(switch_on(Effect::surface_detail));
+  app.add_option("--hairlines", options.effects.hairline_width, "Width of gaps that show partial cracks [m]")
+      ->check(CLI::PositiveNumber)
+      ->each(switch_on(Effect::hairlines));
+  app.add_option("--debris", options.effects.debris_size, "Crushed lumps fall into pieces of this size [m]")
+      ->check(CLI::PositiveNumber)
+      ->each(switch_on(Effect::debris));
+  app.add_flag("--level-set", options.fracture.level_set_cut, "Cut on a voxel grid instead of exactly");
+  app.add_option("--voxel", options.fracture.voxel_size, "Voxel size of that grid [m]")->check(CLI::PositiveNumber);
 }
 
 void add_fracture(CLI::App& app, StillArguments& arguments) {
@@ -206,7 +239,7 @@ void add_extract(CLI::App& app, StillArguments& arguments) {
   ExtractOptions& options = arguments.extract;
   app.add_option("points", options.points, "Text, PLY or VDB with x y z damage [damage_time]")->required();
   app.add_option("--mesh", options.mesh, "Body to cut: mesh file, or a name of assets/meshes.toml");
-  app.add_option("--spacing", options.crack.node_spacing, "Of the nodes on which damage is measured [m]")
+  app.add_option("--spacing", options.fracture.node_spacing, "Of the nodes on which damage is measured [m]")
       ->check(CLI::PositiveNumber)
       ->required();
   add_still_options(app, options, arguments.out);
@@ -229,8 +262,14 @@ int dispatch(int argc, char** argv, LogFormat& log) {
 
   std::string check_file, mesh_file;
   double unit = 1;
-  auto* check_app = app.add_subcommand("check", "Validate a scene and its meshes, simulate nothing");
+  std::optional<Quality> check_quality;
+  bool check_json = false;
+  auto* check_app =
+      app.add_subcommand("check", "Validate a scene and its meshes, say which effects will run, simulate nothing");
   check_app->add_option("scene", check_file, "Scene file (TOML)")->required();
+  check_app->add_option("--quality", check_quality, "draft, preview or final; overrides the scene")
+      ->transform(CLI::CheckedTransformer(quality_words));
+  check_app->add_flag("--json", check_json, "Say the effects as JSON");
   auto* inspect_app = app.add_subcommand("inspect", "Say whether a mesh is a closed solid, and what is wrong with it");
   inspect_app->add_option("mesh", mesh_file, "Mesh file")->required();
   inspect_app->add_option("--unit", unit, "Metres per unit of the file")->check(CLI::PositiveNumber);
@@ -254,7 +293,7 @@ int dispatch(int argc, char** argv, LogFormat& log) {
     return app.exit(error) == 0 ? 0 : static_cast<int>(ErrorKind::usage);
   }
   if (*run_app) return run_command(run_arguments, log);
-  if (*check_app) return check_command(check_file);
+  if (*check_app) return check_command(check_file, check_quality, check_json);
   if (*fracture_app) return fracture_command(still, log);
   if (*extract_app) return extract_command(still, log);
   if (*validate_app) return validate_command(validate_options);

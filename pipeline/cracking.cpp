@@ -2,11 +2,12 @@
 
 #include <cmath>
 
+#include "core/optional_effects.h"
 #include "core/random.h"
+#include "core/stopwatch.h"
 #include "crack/hairlines.h"
 #include "geometry/level_set_cut.h"
 #include "geometry/mass_properties.h"
-#include "pipeline/stopwatch.h"
 
 namespace sunder::pipeline {
 namespace {
@@ -48,9 +49,10 @@ class Cracking {
     const Stopwatch watch(result_.extract_seconds);
     first_gap_ = result_.boundary.region_count;
     result_.damage_time.clear();
-    result_.detail_vertices = result_.detail_limited = result_.hairline_faces = 0;
-    if (!choice_.detail.empty() && result_.boundary.region_count > 1) add_detail(times, attempt);
-    if (choice_.hairline_width > 0) add_hairlines(attempt);
+    result_.detailed_vertices.count = result_.detail_limited = result_.hairline_faces.count = 0;
+    if (with_optional_effects && !choice_.detail.empty() && result_.boundary.region_count > 1)
+      add_detail(times, attempt);
+    if (with_optional_effects && choice_.hairline_width > 0) add_hairlines(attempt);
     return result_.boundary.region_count > 1;
   }
 
@@ -74,22 +76,24 @@ class Cracking {
  private:
   void add_detail(const crack::DamageTimes& times, int attempt) {
     if (attempt >= attempts_with_detail) return count("surface_detail_dropped");
+    const Stopwatch watch(result_.detailed_vertices.seconds);
     crack::DetailSettings settings = crack::detail_preset(choice_.detail, box_.sizes().maxCoeff());
     settings.seed = seed_;
     crack::DetailedBoundary detailed = crack::add_surface_detail(result_.boundary, box_, times, settings, progress_);
     result_.boundary = std::move(detailed.boundary);
     result_.damage_time = std::move(detailed.damage_time);
-    result_.detail_vertices = static_cast<long>(result_.boundary.vertices.size());
+    result_.detailed_vertices.count = static_cast<long>(result_.boundary.vertices.size());
     result_.detail_limited = detailed.limited;
   }
 
   void add_hairlines(int attempt) {
     if (attempt >= attempts_with_hairlines) return count("hairlines_dropped");
     if (attempt > 0) count("hairlines_narrowed");
+    const Stopwatch watch(result_.hairline_faces.seconds);
     const double width = choice_.hairline_width / std::pow(narrowing, attempt);
     const crack::Hairlines lines = crack::add_hairlines(result_.extraction, width, result_.boundary);
     first_gap_ = lines.first_gap;
-    result_.hairline_faces = lines.faces;
+    result_.hairline_faces.count = lines.faces;
   }
 
   /// Neighbours across a gap become outside.

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/progress.h"
+#include "core/stopwatch.h"
 #include "crack/extract.h"
 #include "crack/surface_detail.h"
 #include "geometry/cut.h"
@@ -26,11 +27,12 @@ struct CrackChoice {
 
 struct Cracked {
   crack::Extraction extraction;
-  geometry::RegionBoundary boundary;             ///< what was cut along: with detail and gaps
-  geometry::CutResult cut;                       ///< without the gaps of hairlines; no fragments: nothing separated
-  std::vector<double> damage_time;               ///< per vertex of `boundary` [s], -1: unknown; empty without detail
-  long detail_vertices = 0, detail_limited = 0;  ///< vertices of detailed faces, and those lower than asked
-  long hairline_faces = 0;                       ///< partial crack faces that are shown as gaps
+  geometry::RegionBoundary boundary;  ///< what was cut along: with detail and gaps
+  geometry::CutResult cut;            ///< without the gaps of hairlines; no fragments: nothing separated
+  std::vector<double> damage_time;    ///< per vertex of `boundary` [s], -1: unknown; empty without detail
+  Effort detailed_vertices;           ///< vertices of detailed faces
+  long detail_limited = 0;            ///< those of them that are lower than asked
+  Effort hairline_faces;              ///< partial crack faces that are shown as gaps
   double extract_seconds = 0, cut_seconds = 0;
   Fallbacks fallbacks;
   std::vector<std::string> troubles;  ///< what cuts that failed said

@@ -7,11 +7,11 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include "core/stopwatch.h"
 #include "geometry/mass_properties.h"
 #include "geometry/sample.h"
 #include "pipeline/handover.h"
 #include "pipeline/joint_progress.h"
-#include "pipeline/stopwatch.h"
 
 namespace sunder::pipeline {
 namespace {

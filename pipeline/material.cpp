@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "crack/surface_detail.h"
 #include "pipeline/detail/material_keys.h"
 
 namespace sunder::pipeline {
@@ -16,7 +17,7 @@ void read_poisson_ratio(const Value& value, Material& material) {
   }
 }
 
-constexpr std::array<Key<Material>, 11> kMaterialKeys = {{
+constexpr std::array<Key<Material>, 12> kMaterialKeys = {{
     {"density", [](const Value& value, Material& material) { material.density = value.positive(); }},
     {"youngs_modulus", [](const Value& value, Material& material) { material.youngs_modulus = value.positive(); }},
     {"poisson_ratio", read_poisson_ratio},
@@ -28,12 +29,20 @@ constexpr std::array<Key<Material>, 11> kMaterialKeys = {{
     {"restitution", [](const Value& value, Material& material) { material.restitution = value.within(0, 1); }},
     {"friction", [](const Value& value, Material& material) { material.friction = value.non_negative(); }},
     {"breakable", [](const Value& value, Material& material) { material.breakable = value.flag(); }},
+    {"surface_look", [](const Value& value, Material& material) { material.surface_look = read_surface_look(value); }},
     {"source", [](const Value& value, Material& material) { material.source = value.text(); }},
 }};
 
 }  // namespace
 
 std::span<const Key<Material>> material_keys() { return kMaterialKeys; }
+
+std::string read_surface_look(const Value& value) {
+  const std::vector<std::string> names = crack::detail_preset_names();
+  std::vector<std::pair<std::string_view, std::string>> looks;
+  for (const std::string& name : names) looks.emplace_back(name, name);
+  return value.word<std::string>(looks);
+}
 
 void check_complete(const Section& section, const Material& material) {
   const auto require = [&](std::string_view key, double value) {

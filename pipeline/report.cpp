@@ -43,6 +43,25 @@ Json fragments_json(const Report& report, const Sequence& sequence) {
   return {{"count", list.size()}, {"closed", closed}, {"volume_error", worst}, {"list", list}};
 }
 
+Json effects_json(const std::vector<EffectRecord>& effects) {
+  Json list = Json::array();
+  for (const EffectRecord& e : effects)
+    list.push_back({{"name", info_of(e.effect).name},
+                    {"asked", name_of(e.asked)},
+                    {"ran", e.ran},
+                    {"why", e.why},
+                    {"work", {{info_of(e.effect).work, e.work.count}}},
+                    {"seconds", e.work.seconds}});
+  return list;
+}
+
+Json ledger_json(const mpm::EnergyLedger& energy) {
+  return {{"work", energy.work},          {"kinetic", energy.kinetic},
+          {"tension", energy.tension},    {"compression", energy.compression},
+          {"fracture", energy.fracture},  {"viscous", energy.viscous},
+          {"numerical", energy.balance()}};
+}
+
 Json fracture_json(const FractureRecord& f) {
   return {{"body", f.body},
           {"piece", f.piece},
@@ -62,18 +81,11 @@ Json fracture_json(const FractureRecord& f) {
           {"damaged_share", f.damaged_share},
           {"lump_share", f.lump_share},
           {"volume_error", f.volume_error},
-          {"debris", f.debris},
-          {"hairline_faces", f.hairline_faces},
-          {"surface_detail", {{"vertices", f.detail_vertices}, {"limited", f.detail_limited}}},
+          {"debris", f.effects[Effect::debris].count},
+          {"hairline_faces", f.effects[Effect::hairlines].count},
+          {"surface_detail", {{"vertices", f.effects[Effect::surface_detail].count}, {"limited", f.detail_limited}}},
           {"work_over_impact_energy", f.work_over_impact_energy},
-          {"energy",
-           {{"work", f.energy.work},
-            {"kinetic", f.energy.kinetic},
-            {"tension", f.energy.tension},
-            {"compression", f.energy.compression},
-            {"fracture", f.energy.fracture},
-            {"viscous", f.energy.viscous},
-            {"numerical", f.energy.balance()}}},
+          {"energy", f.energy ? ledger_json(*f.energy) : Json()},
           {"momentum_error", f.momentum_error},
           {"stopped_by", f.stopped_by},
           {"damage_band", f.band_width},
@@ -94,6 +106,13 @@ Json extract_json(const ExtractRecord& e) {
           {"damaged_share", e.damaged_share},
           {"lump_share", e.lump_share},
           {"debris", e.debris}};
+}
+
+std::string names_of_effects_that_ran(const Report& report) {
+  std::string names;
+  for (const EffectRecord& e : report.effects)
+    if (e.ran) names.append(names.empty() ? "" : ", ").append(info_of(e.effect).name);
+  return names.empty() ? "none" : names;
 }
 
 Json energy_json(const Report& report) {
@@ -118,9 +137,7 @@ FractureRecord record_of(const FractureInput& input, const FractureOutcome& outc
   record.damaged_share = outcome.damaged_share;
   record.lump_share = outcome.cracked.extraction.lump_share;
   record.volume_error = outcome.cracked.cut.volume_error;
-  record.debris = outcome.cracked.extraction.debris;
-  record.hairline_faces = outcome.cracked.hairline_faces;
-  record.detail_vertices = outcome.cracked.detail_vertices;
+  record.effects = work_of(outcome);
   record.detail_limited = outcome.cracked.detail_limited;
   record.work_over_impact_energy = outcome.solve.work / outcome.solve.impact_energy;
   record.energy = outcome.solve.energy;
@@ -130,6 +147,12 @@ FractureRecord record_of(const FractureInput& input, const FractureOutcome& outc
   record.tensile_strength = input.material.tensile_strength;
   record.propagation_strength = outcome.solve.propagation_strength;
   return record;
+}
+
+EffectWork total_work(const std::vector<FractureRecord>& fractures) {
+  EffectWork sum;
+  for (const FractureRecord& f : fractures) sum += f.effects;
+  return sum;
 }
 
 ExtractRecord record_of(const crack::Extraction& extraction) {
@@ -168,7 +191,7 @@ std::string to_json(const Report& report, const Sequence& sequence) {
       {"quality", report.quality},
       {"threads", report.threads},
       {"interrupted", report.interrupted},
-      {"effects", {{"ran", report.effects_ran}, {"skipped", report.effects_skipped}}},
+      {"effects", effects_json(report.effects)},
       {"fragments", fragments_json(report, sequence)},
       {"fractures", fractures},
       {"energy", energy_json(report)},
@@ -203,6 +226,7 @@ std::string summary(const Report& report, const Sequence& sequence) {
   std::snprintf(line, sizeof line, "%zu fragments (%td closed) from %td fractures, %zu solves, %zu frames, %.1f s",
                 living.size(), closed, broke, report.fractures.size(), sequence.frames.size(), report.seconds.total);
   std::string text = std::string(line) + "\n";
+  text += "effects: " + names_of_effects_that_ran(report) + "\n";
   for (const std::string& note : report.notes) text += "note: " + note + "\n";
   for (const auto& [name, count] : report.fallbacks) text += "fallback: " + name + " x " + std::to_string(count) + "\n";
   return text;

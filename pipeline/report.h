@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/effects.h"
 #include "pipeline/fracture.h"
 #include "pipeline/sequence.h"
 
@@ -22,11 +23,10 @@ struct FractureRecord {
   StageSeconds seconds;
   int fragments = 0;  ///< 0: stayed whole
   double damaged_share = 0, lump_share = 0, volume_error = 0;
-  int debris = 0;                                ///< pieces that subdivide crushed lumps
-  long hairline_faces = 0;                       ///< partial crack faces that are shown as gaps
-  long detail_vertices = 0, detail_limited = 0;  ///< of detailed crack faces, and those lower than asked
+  EffectWork effects;
+  long detail_limited = 0;  ///< vertices of detailed crack faces that are lower than asked
   double work_over_impact_energy = 0;
-  mpm::EnergyLedger energy;                               ///< [J]
+  std::optional<mpm::EnergyLedger> energy;                ///< [J]; not set: not asked for
   std::string stopped_by;                                 ///< what ended the solve
   double kinetic_before = 0, kinetic_after = 0;           ///< of the body and its partners [J]
   double momentum_error = 0;                              ///< of the hand-over, relative (relative_difference)
@@ -36,6 +36,8 @@ struct FractureRecord {
 
 /// What the solve says of itself; where and when it was is left open.
 FractureRecord record_of(const FractureInput& input, const FractureOutcome& outcome);
+
+EffectWork total_work(const std::vector<FractureRecord>& fractures);
 
 /// What crack extraction found, for commands that extract without a run.
 struct ExtractRecord {
@@ -58,7 +60,7 @@ struct Report {
   std::uint64_t seed = 0;
   int threads = 0;
   bool interrupted = false;
-  std::vector<std::string> effects_ran, effects_skipped;
+  std::vector<EffectRecord> effects;
   std::vector<FractureRecord> fractures;
   std::optional<ExtractRecord> extract;
   std::vector<RepairRecord> repairs;

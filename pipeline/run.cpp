@@ -5,9 +5,9 @@
 
 #include <sys/resource.h>
 
+#include "core/stopwatch.h"
 #include "pipeline/quality.h"
 #include "pipeline/simulation.h"
-#include "pipeline/stopwatch.h"
 
 namespace sunder::pipeline {
 namespace {
@@ -33,25 +33,6 @@ void remove_stale_frames(const std::filesystem::path& folder, const Sequence& se
     if (const int frame = std::stoi(number); frame < sequence.start_frame || frame > last)
       std::filesystem::remove(entry.path());
   }
-}
-
-void list_effects(const Scene& scene, const Sequence& sequence, Report& report) {
-  const bool solved = !report.fractures.empty();
-  const bool again = std::any_of(report.fractures.begin(), report.fractures.end(), [&](const FractureRecord& f) {
-    return sequence.pieces[static_cast<std::size_t>(f.piece)].generation > 0;
-  });
-  const auto list = [&](const char* name, bool ran) {
-    (ran ? report.effects_ran : report.effects_skipped).push_back(name);
-  };
-  list("fracture", solved);
-  list("refracture", again);
-  list("strength_scatter", solved && scene.effects.strength_scatter);
-  const auto any = [&](auto&& took_part) {
-    return std::any_of(report.fractures.begin(), report.fractures.end(), took_part);
-  };
-  list("surface_detail", any([](const FractureRecord& f) { return f.detail_vertices > 0; }));
-  list("hairlines", any([](const FractureRecord& f) { return f.hairline_faces > 0; }));
-  list("debris", any([](const FractureRecord& f) { return f.debris > 0; }));
 }
 
 class Recorder {
@@ -103,6 +84,7 @@ RunResult run(const Scene& scene, const RunOptions& options, Progress& progress)
     const bool complete = simulate(scene, simulation, recorder, progress);
     result.report = simulation.report();
     result.report.interrupted = !complete;
+    result.report.effects = effect_records(simulation.effects(), total_work(result.report.fractures));
     result.sequence = simulation.take_sequence();
     if (scene.outputs.obj && complete) remove_stale_frames(options.out, result.sequence);
     const Stopwatch writing(result.report.seconds.write);
@@ -115,7 +97,6 @@ RunResult run(const Scene& scene, const RunOptions& options, Progress& progress)
   report.threads = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
   report.seconds.total = total;
   report.peak_memory_mb = peak_memory_mb();
-  list_effects(scene, result.sequence, report);
   write_atomically(options.out / "report.json", to_json(report, result.sequence));
   return result;
 }

@@ -9,6 +9,7 @@
 #include "core/types.h"
 #include "geometry/load.h"
 #include "mpm/spline.h"
+#include "pipeline/effects.h"
 #include "pipeline/material.h"
 #include "pipeline/motion_path.h"
 #include "rigid/world.h"
@@ -65,21 +66,10 @@ struct FractureSettings {
   double nearly_whole_volume = 0.98;  ///< and from which it is nearly the whole body
   DamageModel damage = DamageModel::front;
   LoadModel load = LoadModel::contact;
-  int velocity_fields = 1;  ///< 2: the sides of a crack part and rub while the solve goes on
   mpm::Spline spline = mpm::Spline::quadratic;
-  std::optional<double> scatter_length;  ///< over which the strength varies [m]; not set: three cells
-  double node_spacing = 0;               ///< of the lattice on which cracks are found [m]; 0: 0.8 particle spacings
-  double debris_size = 0;      ///< of the pieces that crushed lumps fall into [m]; 0: lumps join the pieces around them
+  double node_spacing = 0;     ///< of the lattice on which cracks are found [m]; 0: 0.8 particle spacings
   bool level_set_cut = false;  ///< cut on a voxel grid instead of exactly
   double voxel_size = 0;       ///< of that grid [m]; 0: 1/150 of the body's diagonal
-};
-
-struct Effects {
-  bool fracture = true;          ///< bodies may break at all
-  bool refracture = true;        ///< fragments may break again
-  bool strength_scatter = true;  ///< Weibull scatter of the strength
-  std::string surface_detail;    ///< look of crack faces (crack::detail_preset); empty: as the damage gives them
-  double hairlines = 0;          ///< width of the gaps that show cracks which separate nothing [m]; 0: not shown
 };
 
 struct Outputs {
@@ -99,7 +89,7 @@ struct Scene {
   std::vector<SceneBody> bodies;
   std::optional<Ground> ground;
   FractureSettings fracture;
-  Effects effects;
+  EffectSettings effects;
   Outputs outputs;
 };
 

@@ -2,8 +2,8 @@
 #include <cstdlib>
 #include <limits>
 
-#include "crack/surface_detail.h"
 #include "pipeline/detail/body_keys.h"
+#include "pipeline/detail/effect_keys.h"
 #include "pipeline/detail/material_keys.h"
 #include "pipeline/detail/scene_keys.h"
 #include "pipeline/scene.h"
@@ -78,16 +78,7 @@ void read_cut(const Value& value, FractureSettings& settings) {
   settings.level_set_cut = value.word<bool>(kWays);
 }
 
-void read_surface_detail(const Value& value, Effects& effects) {
-  const std::string none = "none";
-  std::vector<std::string> names = crack::detail_preset_names();
-  names.insert(names.begin(), none);
-  std::vector<std::pair<std::string_view, std::string>> looks;
-  for (const std::string& name : names) looks.emplace_back(name, name == none ? "" : name);
-  effects.surface_detail = value.word<std::string>(looks);
-}
-
-constexpr std::array<Key<FractureSettings>, 17> kFractureKeys = {{
+constexpr std::array<Key<FractureSettings>, 14> kFractureKeys = {{
     {"minimum_impulse",
      [](const Value& value, FractureSettings& settings) { settings.minimum_impulse = value.non_negative(); }},
     {"minimum_volume",
@@ -107,26 +98,10 @@ constexpr std::array<Key<FractureSettings>, 17> kFractureKeys = {{
     {"nearly_whole_volume", read_nearly_whole_volume},
     {"damage", read_damage},
     {"load", read_load},
-    {"velocity_fields",
-     [](const Value& value, FractureSettings& settings) {
-       settings.velocity_fields = static_cast<int>(value.integer(1, 2));
-     }},
     {"spline", read_spline},
-    {"scatter_length",
-     [](const Value& value, FractureSettings& settings) { settings.scatter_length = value.positive(); }},
     {"node_spacing", [](const Value& value, FractureSettings& settings) { settings.node_spacing = value.positive(); }},
-    {"debris_size",
-     [](const Value& value, FractureSettings& settings) { settings.debris_size = value.non_negative(); }},
     {"cut", read_cut},
     {"voxel_size", [](const Value& value, FractureSettings& settings) { settings.voxel_size = value.positive(); }},
-}};
-
-constexpr std::array<Key<Effects>, 5> kEffectsKeys = {{
-    {"fracture", [](const Value& value, Effects& effects) { effects.fracture = value.flag(); }},
-    {"refracture", [](const Value& value, Effects& effects) { effects.refracture = value.flag(); }},
-    {"strength_scatter", [](const Value& value, Effects& effects) { effects.strength_scatter = value.flag(); }},
-    {"surface_detail", read_surface_detail},
-    {"hairlines", [](const Value& value, Effects& effects) { effects.hairlines = value.non_negative(); }},
 }};
 
 constexpr std::array<Key<Outputs>, 2> kOutputKeys = {{
@@ -196,6 +171,14 @@ MaterialLibrary read_materials(const std::filesystem::path& file, const toml::ta
   return library;
 }
 
+EffectSettings read_effects(const std::filesystem::path& file, const toml::table& document) {
+  EffectSettings settings;
+  read_optional<EffectSettings>(file, document, "effects", effect_keys(), settings);
+  if (const toml::table* table = find_table(file, document, "effects"))
+    check_effects({file, *table, bracketed("effects")}, settings);
+  return settings;
+}
+
 std::optional<Ground> read_ground(const std::filesystem::path& file, const toml::table& document,
                                   const MaterialLibrary& materials) {
   if (!document.contains("ground")) return std::nullopt;
@@ -242,7 +225,7 @@ std::vector<SectionKeys> scene_keys() {
           {"[material.<name>]", scene_material_keys()},
           {"[[body]]", key_names(body_keys())},
           {"[fracture]", key_names<FractureSettings>(kFractureKeys)},
-          {"[effects]", key_names<Effects>(kEffectsKeys)},
+          {"[effects]", key_names(effect_keys())},
           {"[output]", key_names<Outputs>(kOutputKeys)}};
 }
 
@@ -274,7 +257,7 @@ Scene load_scene(const std::filesystem::path& file, const AssetPaths& assets) {
   scene.ground = read_ground(file, document, names.materials);
   scene.bodies = read_bodies(file, document, names);
   read_optional<FractureSettings>(file, document, "fracture", kFractureKeys, scene.fracture);
-  read_optional<Effects>(file, document, "effects", kEffectsKeys, scene.effects);
+  scene.effects = read_effects(file, document);
   read_optional<Outputs>(file, document, "output", kOutputKeys, scene.outputs);
   return scene;
 }

@@ -4,12 +4,13 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/optional_effects.h"
+#include "core/stopwatch.h"
 #include "geometry/convex_parts.h"
 #include "geometry/primitives.h"
 #include "pipeline/detail/piece_mesh.h"
 #include "pipeline/lifecycle.h"
 #include "pipeline/quality.h"
-#include "pipeline/stopwatch.h"
 
 namespace sunder::pipeline {
 namespace {
@@ -54,6 +55,9 @@ Simulation::Simulation(const Scene& scene, const RunOptions& options, Progress& 
     progress.checkpoint("setup", static_cast<double>(b) / static_cast<double>(scene.bodies.size()));
     place(scene.bodies[b], static_cast<int>(b));
   }
+  std::vector<double> sizes;
+  for (const Piece& piece : sequence_.pieces) sizes.push_back(extent_of(piece));
+  effects_ = plan_effects(scene, sizes);
   require_no_overlap();
 }
 
@@ -122,8 +126,8 @@ void Simulation::require_no_overlap() const {
 bool Simulation::may_break(const Live& live, double now) const {
   const Piece& piece = piece_of(live);
   const std::size_t origin = static_cast<std::size_t>(live.origin_index);
-  if (!scene_.effects.fracture || !live.origin->breakable || !live.origin->material.breakable) return false;
-  if (piece.generation > 0 && !scene_.effects.refracture) return false;
+  if (!live.origin->breakable || !live.origin->material.breakable) return false;
+  if (piece.generation > 0 && !(with_optional_effects && effects_.runs(Effect::secondary_fracture))) return false;
   if (fracture_count_[origin] >= scene_.fracture.maximum_fractures) return false;
   if (fragment_count_ >= scene_.fracture.maximum_fragments) return false;
   if (share_of(live) < minimum_volume(scene_.fracture)) return false;
@@ -235,7 +239,7 @@ void Simulation::drive_bodies() {
 
 void Simulation::step(Progress& progress) {
   drive_bodies();
-  if (!scene_.effects.fracture) {
+  if (!effects_.runs(Effect::fracture)) {
     step_world();
     return;
   }

@@ -30,6 +30,7 @@ class Simulation {
   const Sequence& sequence() const { return sequence_; }
   Sequence take_sequence() { return std::move(sequence_); }
   Report& report() { return report_; }
+  const EffectPlan& effects() const { return effects_; }
   int steps_per_frame() const { return steps_per_frame_; }
 
  private:
@@ -93,6 +94,7 @@ class Simulation {
   const Scene& scene_;
   const RunOptions& options_;
   int steps_per_frame_;
+  EffectPlan effects_;
   rigid::World world_;
   Sequence sequence_;
   Report report_;

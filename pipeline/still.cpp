@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/random.h"
+#include "core/stopwatch.h"
 #include "crack/shatter.h"
 #include "geometry/inspect.h"
 #include "geometry/load_points.h"
@@ -16,7 +17,6 @@
 #include "pipeline/detail/piece_mesh.h"
 #include "pipeline/fracture.h"
 #include "pipeline/quality.h"
-#include "pipeline/stopwatch.h"
 
 namespace sunder::pipeline {
 namespace {
@@ -162,6 +162,25 @@ SurfacePoint surface_near(const geometry::TriangleMesh& mesh, const Vec3& x) {
   return nearest;
 }
 
+/// What the options ask of a body of this box, by the rules of scenes. The command breaks it, whatever its material.
+struct Asked {
+  Scene scene;
+  EffectPlan plan;
+  CrackChoice crack;
+
+  Asked(const StillOptions& options, const SceneBody& body, Quality quality, const Box& box) {
+    scene.duration = 0;
+    scene.quality = quality;
+    scene.bodies = {body};
+    scene.bodies[0].material.breakable = true;
+    scene.fracture = options.fracture;
+    scene.effects = options.effects;
+    const double size = box.sizes().maxCoeff();
+    plan = plan_effects(scene, {size});
+    crack = crack_choice(scene, plan, body.material, size);
+  }
+};
+
 FractureInput fracture_input(const FractureOptions& options, const geometry::TriangleMesh& mesh,
                              const Material& material, Report& report) {
   const Material ball = find_material(impactor);
@@ -188,7 +207,6 @@ FractureInput fracture_input(const FractureOptions& options, const geometry::Tri
   input.material = material;
   input.loads = {load};
   input.partners = {{mass}};
-  input.crack = options.crack;
   input.particles = settings_of(options.quality).particles;
   input.seed = input.solve.seed = options.seed;
   return input;
@@ -201,7 +219,8 @@ void add_fallbacks(Report& report, const Fallbacks& fallbacks) {
 /// The pieces of an impact, with the record of its solve.
 std::vector<geometry::Fragment> hit(const FractureOptions& options, const geometry::TriangleMesh& mesh,
                                     const SceneBody& body, Report& report, Progress& progress) {
-  const FractureInput input = fracture_input(options, mesh, body.material, report);
+  const Asked asked(options, body, options.quality, geometry::bounds(mesh));
+  const FractureInput input = as_asked(fracture_input(options, mesh, body.material, report), asked.scene, asked.plan);
   FractureOutcome outcome = fracture(input, progress);
   FractureRecord record = record_of(input, outcome);
   record.body = body.name;
@@ -217,6 +236,7 @@ std::vector<geometry::Fragment> hit(const FractureOptions& options, const geomet
   report.seconds.extract = record.seconds.extract;
   report.seconds.cut = record.seconds.cut;
   report.fractures.push_back(record);
+  report.effects = effect_records(asked.plan, record.effects);
   report.extract = record_of(outcome.cracked.extraction);
   report.extract->points = record.particles;
   report.extract->point_spacing = outcome.own->samples.spacing;
@@ -225,10 +245,12 @@ std::vector<geometry::Fragment> hit(const FractureOptions& options, const geomet
 }
 
 std::vector<geometry::Fragment> shatter(const FractureOptions& options, const geometry::TriangleMesh& mesh,
-                                        Report& report, Progress& progress) {
+                                        const SceneBody& body, Report& report, Progress& progress) {
   const std::vector<Vec3> sites = random_points(mesh, options.cells, options.seed, progress);
   const geometry::RegionBoundary cells = crack::voronoi_cells(sites, geometry::bounds(mesh), options.seed, progress);
-  Cracked cracked = cut_regions(mesh, cells, options.crack, options.seed, progress);
+  const Asked asked(options, body, options.quality, geometry::bounds(mesh));
+  Cracked cracked = cut_regions(mesh, cells, asked.crack, options.seed, progress);
+  report.effects = effect_records(asked.plan, work_of(cracked));
   report.seconds.extract = cracked.extract_seconds;
   report.seconds.cut = cracked.cut_seconds;
   report.cut_volume_error = cracked.cut.volume_error;
@@ -290,7 +312,7 @@ StillResult fracture_mesh(const FractureOptions& options, Progress& progress) {
     result.report = report_of(options, body.name);
     if (!source.repairs.empty()) result.report.repairs.push_back({body.name, source.repairs});
     const std::vector<geometry::Fragment> fragments = options.cells > 0
-                                                          ? shatter(options, source.mesh, result.report, progress)
+                                                          ? shatter(options, source.mesh, body, result.report, progress)
                                                           : hit(options, source.mesh, body, result.report, progress);
     result.sequence = still_sequence(body, source.mesh, fragments, body.material.density);
     write_pieces(result.sequence, options.out, result.report.seconds.write);
@@ -318,8 +340,11 @@ StillResult extract_points(const ExtractOptions& options, Progress& progress) {
     auto repairs = std::move(result.report.repairs);
     result.report = report_of(options, body.name);
     result.report.repairs = std::move(repairs);
-    Cracked cracked = mesh.faces.empty() ? extract_only(field, options.crack, options.seed, progress)
-                                         : crack_and_cut(mesh, field, options.crack, options.seed, progress);
+    const Asked asked(options, body, Quality::preview,
+                      mesh.faces.empty() ? mpm::box_of(field.points) : geometry::bounds(mesh));
+    Cracked cracked = mesh.faces.empty() ? extract_only(field, asked.crack, options.seed, progress)
+                                         : crack_and_cut(mesh, field, asked.crack, options.seed, progress);
+    result.report.effects = effect_records(asked.plan, work_of(cracked));
     result.report.extract = record_of(cracked.extraction);
     result.report.extract->point_spacing = field.spacing;
     result.report.seconds.extract = cracked.extract_seconds;

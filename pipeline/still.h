@@ -18,7 +18,8 @@ struct StillOptions {
   geometry::LoadSettings load;  ///< unit and up axis of the file
   double height = 0;            ///< scale the mesh to this height [m]; 0: as it is
   std::filesystem::path out;    ///< folder for the results; created when missing
-  CrackChoice crack;
+  FractureSettings fracture;    ///< of how cracks are found and cut
+  EffectSettings effects;
   std::uint64_t seed = 1;
 };
 

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "core/stopwatch.h"
 #include "pipeline/sequence.h"
-#include "pipeline/stopwatch.h"
 #include "validation/problem.h"
 
 namespace sunder::pipeline {

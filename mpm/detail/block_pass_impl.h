@@ -1,6 +1,8 @@
 #pragma once
 /// The pass over a block, for the instruction set that the including file is compiled for.
+#include "core/optional_effects.h"
 #include "mpm/block_pass.h"
+#include "mpm/detail/block_sum_impl.h"
 #include "mpm/detail/lane_laws.h"
 
 namespace sunder::mpm {
@@ -129,8 +131,9 @@ inline void scatter(const Place<S>& place, int lane, Quad momentum, Quad bx, Qua
   }
 }
 
-/// One group of `width` points of a block.
-template <class S, Stage stage>
+/// One group of `width` points of a block. What no point of a block needs is not asked for each of them: with
+/// `two_fields` the nodes around a point may belong to either field, with `books` dissipation is added up.
+template <class S, Stage stage, bool two_fields, bool books>
 class Group {
  public:
   /// `velocity`: the tiles of velocities that the stencils of the block reach; the second is null without a second
@@ -276,10 +279,12 @@ class Group {
     if (!any(grows)) return;
     const Lanes reached = min((1.0 + load(chunk_.softening_slope + lane_)) * (1.0 - strength / largest), all(1.0));
     const Lanes after = grows & (reached > damage) ? reached : damage;
-    // Damage grows at the strain of the end of the step: what it releases is the tensile energy stored there.
-    double* dissipated = chunk_.dissipated + lane_;
-    const Lanes stored = principal.tensile_energy(c_.shear_modulus, c_.lame_lambda);
-    store(dissipated, load(dissipated) + (grows ? (after - damage) * stored : Lanes{}));
+    if constexpr (books) {
+      // Damage grows at the strain of the end of the step: what it releases is the tensile energy stored there.
+      double* dissipated = chunk_.dissipated + lane_;
+      const Lanes stored = principal.tensile_energy(c_.shear_modulus, c_.lame_lambda);
+      store(dissipated, load(dissipated) + (grows ? (after - damage) * stored : Lanes{}));
+    }
     damage = after;
     store(chunk_.damage + lane_, damage);
     store(chunk_.threshold + lane_, grows ? largest : threshold);
@@ -308,14 +313,15 @@ class Group {
     stress.xy += viscosity * rate.xy;
     stress.xz += viscosity * rate.xz;
     stress.yz += viscosity * rate.yz;
-    const Lanes squared = rate.xx * rate.xx + rate.yy * rate.yy + rate.zz * rate.zz +
-                          2.0 * (rate.xy * rate.xy + rate.xz * rate.xz + rate.yz * rate.yz);
-    viscous_work_ = viscosity * volume * squared;
+    if constexpr (books) {
+      const Lanes squared = rate.xx * rate.xx + rate.yy * rate.yy + rate.zz * rate.zz +
+                            2.0 * (rate.xy * rate.xy + rate.xz * rate.xz + rate.yz * rate.yz);
+      pass_.viscous_work += sum(viscosity * volume * squared) * c_.particle_volume * c_.time_step;
+    }
   }
 
   /// m v + (m C - dt V0 J s / moment) (x_i - x_p). Fan (2024) eq. 3.4-3.5 (2.23-2.24 print the opposite sign).
   void scatter_momentum(const Symmetric& s, Lanes volume) {
-    pass_.viscous_work += sum(viscous_work_) * c_.particle_volume * c_.time_step;
     const double mass = c_.particle_mass, m = mass * c_.cell_size;
     const Lanes f = volume * (c_.time_step * c_.particle_volume / (spline_moment(S::name) * c_.cell_size));
     const Lanes q[9] = {m * affine_[0] - f * s.xx, m * affine_[1] - f * s.xy, m * affine_[2] - f * s.xz,
@@ -345,7 +351,7 @@ class Group {
 
   /// In which fields the nodes around a point are for it. A point that came to another cell is classified anew.
   unsigned long long side_of(int lane) {
-    if (!pass_.second.tile) return 0;
+    if constexpr (!two_fields) return 0;
     const int n = lane_ + lane, corner = place_.corner(lane);
     if (chunk_.side_corner[n] != corner) {
       const Stray at = stray(lane);
@@ -389,7 +395,7 @@ class Group {
   MotionChunk* motion_;
   const int lane_, first_, count_;
   Place<S> place_;
-  Lanes h_[9], velocity_[3], affine_[9], viscous_work_;
+  Lanes h_[9], velocity_[3], affine_[9];
 };
 
 /// The velocities that the stencils of a block reach, side by side.
@@ -417,95 +423,38 @@ inline void prefetch(const PointChunk* chunk) {
   for (; from < end; from += 64) __builtin_prefetch(from, 1);
 }
 
-template <class S, Stage stage>
-void run_pass(const StepConstants& constants, const StepHandler& handler, BlockPass& pass) {
-  alignas(64) Quad first_field[tile_nodes(S::name)], second_field[tile_nodes(S::name)];
-  Quad* const velocity[2] = {first_field, pass.second.tile ? second_field : nullptr};
+template <class S, Stage stage, bool two_fields, bool books>
+void run_points(const StepConstants& constants, const StepHandler& handler, BlockPass& pass) {
+  alignas(64) Quad first_field[tile_nodes(S::name)], second_field[two_fields ? tile_nodes(S::name) : 1];
+  Quad* const velocity[2] = {first_field, two_fields ? second_field : nullptr};
   if constexpr (stage != Stage::start) {
     fill_tile<S>(pass.velocity, first_field);
-    if (pass.second.tile) fill_tile<S>(pass.second.velocity, second_field);
+    if constexpr (two_fields) fill_tile<S>(pass.second.velocity, second_field);
   }
   if constexpr (stage != Stage::finish) {
     for (int n = 0; n < tile_nodes(S::name); ++n) store_quad(pass.tile[n].value, Quad{});
-    if (pass.second.tile)
+    if constexpr (two_fields)
       for (int n = 0; n < tile_nodes(S::name); ++n) store_quad(pass.second.tile[n].value, Quad{});
   }
   for (int first = 0; first < pass.count; first += width) {
     if (first % chunk_size == 0) prefetch(pass.chunks + first / chunk_size + 1);
-    Group<S, stage> group(constants, handler, velocity, pass, first);
+    Group<S, stage, two_fields, books> group(constants, handler, velocity, pass, first);
     group.run();
   }
 }
 
-template <class S>
-inline void add_tiles(const Node* const tile[8], Quad total[block_nodes]) {
-  constexpr int edge = tile_edge(S::name), above = edge - block_edge;
-  for (int n = 0; n < block_nodes; ++n) total[n] = Quad{};
-  for (int x = 0; x < 2; ++x)
-    for (int y = 0; y < 2; ++y)
-      for (int z = 0; z < 2; ++z) {
-        const Node* from = tile[4 * x + 2 * y + z];
-        if (!from) continue;
-        const int nx = x ? above : block_edge, ny = y ? above : block_edge, nz = z ? above : block_edge;
-        for (int i = 0; i < nx; ++i)
-          for (int j = 0; j < ny; ++j) {
-            const Node* row = from + ((i + block_edge * x) * edge + j + block_edge * y) * edge + block_edge * z;
-            for (int k = 0; k < nz; ++k) total[(i * block_edge + j) * block_edge + k] += load_quad(row[k].value);
-          }
-      }
+template <class S, Stage stage, bool two_fields>
+void run_fields(const StepConstants& constants, const StepHandler& handler, BlockPass& pass) {
+  if constexpr (with_optional_effects && stage != Stage::finish)
+    if (constants.books_energy) return run_points<S, stage, two_fields, true>(constants, handler, pass);
+  run_points<S, stage, two_fields, false>(constants, handler, pass);
 }
 
-/// Weights go to zero smoothly, so a node can hold a mass whose inverse is not finite.
-inline bool has_mass(Quad momentum) { return momentum[3] > 1e-290; }
-
-inline Quad velocity_of(Quad momentum) {
-  Quad v = has_mass(momentum) ? momentum / momentum[3] : Quad{};
-  v[3] = momentum[3];
-  return v;
-}
-
-inline double dot(Quad a, Quad b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-/// Contact of the two fields of a node across a crack plane: where they approach, they get a common normal velocity,
-/// and friction takes at most `friction` times that change from their sliding. Bardenhagen et al. (2000); Fan (2024)
-/// eq. 3.7 prints the sign of separation and eq. 3.6 a normal that is not a unit vector.
-inline void make_contact(Quad n, double friction, Quad& first, Quad& second) {
-  const double m1 = first[3], m2 = second[3], reduced = m1 * m2 / (m1 + m2);
-  n[3] = 0;
-  Quad relative = first - second;
-  relative[3] = 0;
-  const double approach = -dot(relative, n);
-  if (approach <= 0) return;
-  // Impulse on the first field: along the normal, and against the sliding.
-  const Quad slide = relative + approach * n;
-  const double speed = __builtin_sqrt(dot(slide, slide)), most = friction * approach;
-  Quad impulse = reduced * approach * n;
-  if (speed > 0) impulse -= reduced * (speed < most ? speed : most) / speed * slide;
-  first += impulse / m1;
-  second -= impulse / m2;
-}
-
-template <class S>
-void run_sum(const BlockSum& block) {
-  Quad first[block_nodes];
-  add_tiles<S>(block.tile, first);
-  for (int n = 0; n < block_nodes; ++n) first[n] = velocity_of(first[n]);
-  if (block.second_nodes) {
-    Quad second[block_nodes];
-    add_tiles<S>(block.second_tile, second);
-    for (int n = 0; n < block_nodes; ++n) {
-      const bool behind = has_mass(second[n]), before = has_mass(first[n]);
-      second[n] = velocity_of(second[n]);
-      if (behind && before) make_contact(load_quad(block.planes[n].value), block.friction, first[n], second[n]);
-      // A field without material moves with the other one, should a point come to it.
-      else if (behind)
-        first[n] = second[n] * Quad{1, 1, 1, 0};
-      else
-        second[n] = first[n] * Quad{1, 1, 1, 0};
-      store_quad(block.second_nodes[n].value, second[n]);
-    }
-  }
-  for (int n = 0; n < block_nodes; ++n) store_quad(block.nodes[n].value, first[n]);
+template <class S, Stage stage>
+void run_pass(const StepConstants& constants, const StepHandler& handler, BlockPass& pass) {
+  if constexpr (with_optional_effects)
+    if (pass.second.tile) return run_fields<S, stage, true>(constants, handler, pass);
+  run_fields<S, stage, false>(constants, handler, pass);
 }
 
 template <class S>

@@ -1,5 +1,5 @@
 #pragma once
-/// The same functions compiled for several instruction sets; cmake/instruction_sets.cmake says which.
+/// The same functions compiled for several instruction sets; cmake/sunder.cmake says which.
 #include "mpm/block_pass.h"
 
 namespace sunder::mpm {

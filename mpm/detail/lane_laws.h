@@ -1,6 +1,7 @@
 #pragma once
 /// Elasticity and damage of `width` points at once; see mpm/neo_hookean.h and mpm/rankine.h for the same point by
-/// point.
+/// point. Always inline: which products the compiler contracts, and so the last bit, must not depend on where it finds
+/// inlining worth its while.
 #include "mpm/detail/lanes.h"
 
 namespace sunder::mpm {
@@ -11,7 +12,7 @@ struct Symmetric {
 };
 
 /// log(1 + x) to rounding. Strains are small nearly always: atanh series in x / (2 + x).
-inline Lanes log1p(Lanes x) {
+[[gnu::always_inline]] inline Lanes log1p(Lanes x) {
   constexpr double small = 0.02;
   const Lanes s = x / (2.0 + x), z = s * s;
   const Lanes series = 2.0 * s * (1.0 + z * (1.0 / 3 + z * (1.0 / 5 + z * (1.0 / 7 + z * (1.0 / 9)))));
@@ -23,7 +24,7 @@ inline Lanes log1p(Lanes x) {
 }
 
 /// J - 1 without cancellation.
-inline Lanes volume_change(const Lanes h[9]) {
+[[gnu::always_inline]] inline Lanes volume_change(const Lanes h[9]) {
   const Lanes trace = h[0] + h[4] + h[8];
   const Lanes m0 = h[4] * h[8] - h[5] * h[7], m1 = h[0] * h[8] - h[2] * h[6], m2 = h[0] * h[4] - h[1] * h[3];
   const Lanes det = h[0] * m0 - h[1] * (h[3] * h[8] - h[5] * h[6]) + h[2] * (h[3] * h[7] - h[4] * h[6]);
@@ -34,7 +35,7 @@ struct NeoHookeanLanes {
   double mu, lambda;
 
   /// Cauchy stress (mu (b - I) + lambda ln J I) / J.
-  Symmetric cauchy_stress(const Lanes h[9], Lanes dj) const {
+  [[gnu::always_inline]] Symmetric cauchy_stress(const Lanes h[9], Lanes dj) const {
     const Lanes inverse = 1.0 / (1.0 + dj), m = mu * inverse, pressure = inverse * lambda * log1p(dj);
     const auto row = [&](int i, int j) {
       return h[3 * i] * h[3 * j] + h[3 * i + 1] * h[3 * j + 1] + h[3 * i + 2] * h[3 * j + 2];
@@ -46,7 +47,7 @@ struct NeoHookeanLanes {
 };
 
 /// Where the largest principal stress may exceed r: mean + 2 sqrt(J2 / 3) does.
-inline Mask may_exceed(const Symmetric& s, Lanes r) {
+[[gnu::always_inline]] inline Mask may_exceed(const Symmetric& s, Lanes r) {
   const Lanes mean = (s.xx + s.yy + s.zz) * (1.0 / 3), x = s.xx - mean, y = s.yy - mean, z = s.zz - mean;
   const Lanes j2 = 0.5 * (x * x + y * y + z * z) + (s.xy * s.xy + s.xz * s.xz + s.yz * s.yz), left = r - mean;
   return (left < 0.0) | (4.0 / 3 * j2 > left * left);
@@ -60,7 +61,7 @@ struct Principal {
   Lanes q, p;
   Lanes root[3];  ///< ascending
 
-  explicit Principal(const Symmetric& s) {
+  [[gnu::always_inline]] explicit Principal(const Symmetric& s) {
     q = (s.xx + s.yy + s.zz) * (1.0 / 3);
     const Lanes x = s.xx - q, y = s.yy - q, z = s.zz - q;
     const Lanes squared = (x * x + y * y + z * z + 2.0 * (s.xy * s.xy + s.xz * s.xz + s.yz * s.yz)) * (1.0 / 6);
@@ -83,7 +84,7 @@ struct Principal {
   Lanes value(int n) const { return q + p * root[n]; }
 
   /// Elastic energy of the tensile stresses per volume, sum of s_k e_k / 2 with the strains e of Hooke's law.
-  Lanes tensile_energy(double mu, double lambda) const {
+  [[gnu::always_inline]] Lanes tensile_energy(double mu, double lambda) const {
     const double nu = lambda / (2 * (lambda + mu)), modulus = 2 * mu * (1 + nu);
     const Lanes trace = 3.0 * q;
     Lanes sum = {};
@@ -97,7 +98,7 @@ struct Principal {
   /// s+, the tensile part of s. Where the middle value is tensile it is s less the compressive part, so that only the
   /// projector on one direction whose value has the other sign than its neighbour is ever needed: its denominator may
   /// vanish no faster than that value.
-  Symmetric tension(const Symmetric& s) const {
+  [[gnu::always_inline]] Symmetric tension(const Symmetric& s) const {
     const Mask from_below = value(1) > 0.0;
     const Lanes g = from_below ? root[0] : root[2];
     const Lanes v = from_below ? min(value(0), all(0.0)) : max(value(2), all(0.0));

@@ -8,6 +8,9 @@ namespace sunder::pipeline::detail {
 /// Every value of a material; `base` of a scene's material is read before these.
 std::span<const Key<Material>> material_keys();
 
+/// A name that crack::detail_preset knows.
+std::string read_surface_look(const Value& value);
+
 /// Throws when a value that a material needs is missing: density and elasticity always, strength and toughness if it
 /// can break.
 void check_complete(const Section& section, const Material& material);

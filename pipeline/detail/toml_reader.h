@@ -41,6 +41,11 @@ class Value {
   /// "file:line: subject: message".
   [[noreturn]] void fail(const std::string& message) const { detail::fail(*file_, line(), subject_ + ": " + message); }
 
+  bool is_text() const { return node_->is_string(); }
+  bool is_flag() const { return node_->is_boolean(); }
+  /// "expected three numbers, found a string".
+  [[noreturn]] void fail_type(std::string_view expected) const;
+
   std::string text() const;
   bool flag() const;
   std::int64_t integer(std::int64_t minimum, std::int64_t maximum) const;
@@ -65,7 +70,6 @@ class Value {
   }
 
  private:
-  [[noreturn]] void fail_type(std::string_view expected) const;
   double finite(const toml::node& node, std::string_view expected) const;
 
   const std::filesystem::path* file_;

@@ -79,7 +79,14 @@ TEST_F(CommandLine, JsonErrorsCarryTheCode) {
 
 TEST_F(CommandLine, AValidSceneChecksAndRuns) {
   const std::string scene = file("still.toml", "[scene]\nduration = 0.1\n" + body_ + "\"cup\"\n");
-  EXPECT_EQ(sunder({"check", scene}).code, 0);
+  const Outcome checked = sunder({"check", scene});
+  EXPECT_EQ(checked.code, 0);
+  EXPECT_NE(checked.out.find("\ntwo_velocity_fields  auto skipped  the quality is not final\n"), std::string::npos)
+      << checked.out;
+  const Outcome json = sunder({"check", scene, "--json", "--quality", "final"});
+  EXPECT_EQ(json.code, 0);
+  EXPECT_NE(json.out.find("\"name\": \"two_velocity_fields\""), std::string::npos) << json.out;
+  EXPECT_NE(json.out.find("\"why\": \"the quality is final\""), std::string::npos) << json.out;
   const Outcome outcome =
       sunder({"run", scene, "--out", (folder_ / "out").string(), "--quality", "draft", "--seed", "3"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;

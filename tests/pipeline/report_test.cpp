@@ -60,10 +60,18 @@ TEST(Report, EveryKeyIsDocumented) {
   const std::string text{std::istreambuf_iterator<char>(in), {}};
   Report report;
   report.fractures.resize(1);
+  report.fractures[0].energy.emplace();
+  report.effects = effect_records({}, {});
   report.repairs.push_back({"cup", {"filled 1 hole"}});
   const auto json = nlohmann::json::parse(to_json(report, broken_cup()));
   for (const auto& [key, value] : json.items()) EXPECT_NE(text.find(key), std::string::npos) << key;
   for (const auto& [key, value] : json["fractures"][0].items()) EXPECT_NE(text.find(key), std::string::npos) << key;
+  for (const auto& [key, value] : json["fractures"][0]["energy"].items())
+    EXPECT_NE(text.find(key), std::string::npos) << key;
+  for (const auto& effect : json["effects"]) {
+    for (const auto& [key, value] : effect.items()) EXPECT_NE(text.find(key), std::string::npos) << key;
+    for (const auto& [key, value] : effect["work"].items()) EXPECT_NE(text.find(key), std::string::npos) << key;
+  }
   for (const auto& [key, value] : json["fragments"]["list"][0].items())
     EXPECT_NE(text.find(key), std::string::npos) << key;
   for (const auto& [key, value] : json["seconds"].items()) EXPECT_NE(text.find(key), std::string::npos) << key;

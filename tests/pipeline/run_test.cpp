@@ -133,17 +133,32 @@ TEST(Run, ASceneWithoutAHardHitNeverSamplesAParticle) {
   const RunResult result = run_quietly(scene, out);
   EXPECT_EQ(result.report.particle_steps, 0);
   EXPECT_EQ(result.sequence.pieces.size(), scene.bodies.size());
-  EXPECT_EQ(result.report.effects_skipped, (std::vector<std::string>{"fracture", "refracture", "strength_scatter",
-                                                                     "surface_detail", "hairlines", "debris"}));
+  for (const EffectRecord& effect : result.report.effects) {
+    EXPECT_FALSE(effect.ran) << info_of(effect.effect).name;
+    EXPECT_EQ(effect.work.count, 0) << info_of(effect.effect).name;
+  }
   fs::remove_all(out);
 }
 
 TEST(Run, AnEffectThatIsOffStaysOff) {
   Scene scene = demo("plate_ball", 0.1);
-  scene.effects.fracture = false;
+  scene.effects.asked[Effect::fracture] = Ask::off;
   const fs::path out = scratch("off");
   EXPECT_EQ(run_quietly(scene, out).report.particle_steps, 0);
   fs::remove_all(out);
+}
+
+TEST(Run, FragmentsBreakAgainUnlessThatIsOff) {
+  Scene scene = demo("plate_ball", 0.2);
+  const auto again = [&] {
+    const fs::path out = scratch("again");
+    const RunResult result = run_quietly(scene, out);
+    fs::remove_all(out);
+    return result.report.effects[static_cast<std::size_t>(Effect::secondary_fracture)];
+  };
+  EXPECT_GT(again().work.count, 0);
+  scene.effects.asked[Effect::secondary_fracture] = Ask::off;
+  EXPECT_EQ(again().work.count, 0);
 }
 
 /// Stops as the user would, in the middle of the solve.

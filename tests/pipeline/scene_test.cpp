@@ -113,13 +113,19 @@ maximum_fractures = 2
 refracture_delay = 0
 damage = "local"
 load = "prescribed"
-velocity_fields = 2
 spline = "cubic"
-scatter_length = 0.02
 [effects]
 fracture = true
-refracture = false
-strength_scatter = false
+secondary_fracture = false
+flaws = "on"
+scatter_length = 0.02
+two_velocity_fields = "off"
+surface_detail = "auto"
+surface_look = "slate"
+hairline_width = 0.001
+smallest_detail = 0.1
+debris = "on"
+debris_size = 0.003
 [output]
 obj = false
 glb = false
@@ -152,12 +158,15 @@ glb = false
   EXPECT_EQ(scene.fracture.refracture_delay, 0);
   EXPECT_EQ(scene.fracture.damage, DamageModel::local);
   EXPECT_EQ(scene.fracture.load, LoadModel::prescribed);
-  EXPECT_EQ(scene.fracture.velocity_fields, 2);
   EXPECT_EQ(scene.fracture.spline, mpm::Spline::cubic);
-  EXPECT_EQ(scene.fracture.scatter_length, 0.02);
-  EXPECT_TRUE(scene.effects.fracture);
-  EXPECT_FALSE(scene.effects.refracture);
-  EXPECT_FALSE(scene.effects.strength_scatter);
+  const EffectSettings& effects = scene.effects;
+  EXPECT_EQ(effects.asked.values, (std::array{Ask::on, Ask::off, Ask::on, Ask::off, Ask::automatic, Ask::automatic,
+                                              Ask::on, Ask::automatic}));
+  EXPECT_EQ(effects.scatter_length, 0.02);
+  EXPECT_EQ(effects.surface_look, "slate");
+  EXPECT_EQ(effects.hairline_width, 0.001);
+  EXPECT_EQ(effects.smallest_detail, 0.1);
+  EXPECT_EQ(effects.debris_size, 0.003);
   EXPECT_FALSE(scene.outputs.obj);
   EXPECT_FALSE(scene.outputs.glb);
 }
@@ -264,6 +273,19 @@ TEST_F(SceneTest, NamesLineAndRemedyOfOtherMistakes) {
       {"[fracture]\nminimum_volume = 2\n" + kBall,
        "scene.toml:2: [fracture]: minimum_volume: expected a number from 0 to 1"},
       {"[fracture]\nmaximum_fractures = -1\n" + kBall, "scene.toml:2"},
+      {"[effects]\nflaws = 'of'\n" + kBall, "scene.toml:2: [effects]: flaws: unknown word 'of'; did you mean 'off'?"},
+      {"[effects]\nhairlines = 0.001\n" + kBall,
+       "scene.toml:2: [effects]: hairlines: expected \"off\", \"on\" or \"auto\", found a number"},
+      {"[effects]\ndebrs = 'on'\n" + kBall, "scene.toml:2: [effects]: unknown key 'debrs'; did you mean 'debris'?"},
+      {"[effects]\nsurface_look = 'rok'\n" + kBall,
+       "scene.toml:2: [effects]: surface_look: unknown word 'rok'; did you mean 'rock'?"},
+      {"[effects]\nhairline_width = 0\n" + kBall, "scene.toml:2: [effects]: hairline_width: expected a number above 0"},
+      {"[effects]\ndebris = 'on'\n" + kBall, "scene.toml:2: [effects]: debris: missing key 'debris_size'"},
+      {"[effects]\ndebris = false\ndebris_size = 0.01\n" + kBall,
+       "scene.toml:3: [effects]: debris_size: a parameter of debris, switched off"},
+      {"[effects]\nhairlines = 'off'\nsurface_detail = 'off'\nsmallest_detail = 0.1\n" + kBall,
+       "scene.toml:4: [effects]: smallest_detail: a parameter of surface_detail and hairlines, switched off"},
+      {"[material.x]\nbase = 'glass'\nsurface_look = 'glas'\n" + kBall, "did you mean 'glass'?"},
       {"[material.x]\nbase = 'glass'\ndensity = -2\n" + kBall,
        "scene.toml:3: material 'x': density: expected a number above 0, found -2"},
       {"[material.x]\nbase = 'glass'\npoisson_ratio = 0.5\n" + kBall,

@@ -346,18 +346,18 @@ TEST_F(Still, WrongExtractOptionsAreNamed) {
   options.points = folder_ / "none.txt";
   expect_error(options, ErrorKind::io, "none.txt");
   options = extract_options(cloud_of(in_slab), true);
-  options.crack.node_spacing = 0.3 / points_per_axis;
+  options.fracture.node_spacing = 0.3 / points_per_axis;
   expect_error(options, ErrorKind::usage, "spacing");
-  options.crack.node_spacing = 0;
-  options.crack.detail = "marzipan";
+  options.fracture.node_spacing = 0;
+  options.effects.surface_look = "marzipan";
   expect_error(options, ErrorKind::usage, "marzipan");
   expect_error(extract_options("0 0 0\n", true), ErrorKind::usage, "line 1");
 }
 
 TEST_F(Still, TheVoxelCutReportsItsLoss) {
   ExtractOptions options = extract_options(cloud_of(in_slab), true);
-  options.crack.level_set = true;
-  options.crack.voxel_size = 0.02;
+  options.fracture.level_set_cut = true;
+  options.fracture.voxel_size = 0.02;
   const StillResult result = run(options);
   ASSERT_EQ(standing(result).size(), 2u);
   expect_pieces_and_files(result, out());
@@ -401,7 +401,7 @@ TEST(Cracking, RoughFragmentsShareTheirFaces) {
   ASSERT_EQ(smooth.cut.fragments.size(), 2u);
   ASSERT_EQ(rough.cut.fragments.size(), 2u);
   EXPECT_TRUE(rough.fallbacks.empty());
-  EXPECT_GT(rough.detail_vertices, static_cast<long>(smooth.boundary.vertices.size()));
+  EXPECT_GT(rough.detailed_vertices.count, static_cast<long>(smooth.boundary.vertices.size()));
   EXPECT_EQ(rough.damage_time.size(), rough.boundary.vertices.size());
   EXPECT_NEAR(volume_of(rough.cut.fragments), 1, volume_kept);
   for (std::size_t i = 0; i < 2; ++i) {
@@ -423,7 +423,7 @@ TEST(Cracking, HairlinesLeaveOnlyPieces) {
         return std::abs(x.y() + 0.2) < 0.08 || (std::abs(x.x()) < 0.08 && x.y() < 0.25 && x.y() > 0);
       },
       choice);
-  ASSERT_GT(result.hairline_faces, 0);
+  ASSERT_GT(result.hairline_faces.count, 0);
   ASSERT_EQ(result.cut.fragments.size(), 2u);
   EXPECT_LT(volume_of(result.cut.fragments), 1);  // the gap is empty
   EXPECT_GT(volume_of(result.cut.fragments), 1 - 2 * choice.hairline_width);
@@ -465,7 +465,7 @@ TEST(Cracking, ABodyThatIsNoSolidFallsBackToVoxelsAndSaysSo) {
   EXPECT_EQ(result.fallbacks.at("cut_retried"), 4);
   EXPECT_EQ(result.fallbacks.at("cut_level_set"), 1);
   EXPECT_GE(result.troubles.size(), 4u);
-  EXPECT_EQ(result.hairline_faces, 0);  // dropped
+  EXPECT_EQ(result.hairline_faces.count, 0);  // dropped
   for (const geometry::Fragment& fragment : result.cut.fragments)
     EXPECT_TRUE(geometry::is_closed_two_manifold(fragment.mesh));
 }

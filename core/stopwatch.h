@@ -2,7 +2,7 @@
 /// Wall-clock time of a scope.
 #include <chrono>
 
-namespace sunder::pipeline {
+namespace sunder {
 
 /// Adds the seconds between its construction and destruction to a sum.
 class Stopwatch {
@@ -17,4 +17,15 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_;
 };
 
-}  // namespace sunder::pipeline
+/// How much of something was done, and how long that took.
+struct Effort {
+  long count = 0;
+  double seconds = 0;  ///< wall-clock
+  Effort& operator+=(const Effort& other) {
+    count += other.count;
+    seconds += other.seconds;
+    return *this;
+  }
+};
+
+}  // namespace sunder
