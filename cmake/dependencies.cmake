@@ -5,6 +5,7 @@ find_package(assimp REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(tomlplusplus REQUIRED)
 find_package(nlohmann_json REQUIRED)
+find_path(CEREAL_INCLUDE cereal/cereal.hpp REQUIRED)
 find_package(PkgConfig REQUIRED)
 
 set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)

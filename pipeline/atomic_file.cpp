@@ -1,4 +1,6 @@
 #include <cerrno>
+#include <csignal>
+#include <cstdlib>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -60,6 +62,18 @@ void write_atomically(const fs::path& file, std::string_view bytes) {
   if (reason == 0) return;
   unlink(temporary.path.c_str());
   fail(file, reason);
+}
+
+void remove_abandoned(const fs::path& folder) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    // .<name>.<process>.<number>.tmp
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with('.') || entry.path().extension() != ".tmp") continue;
+    const fs::path process = entry.path().stem().stem().extension();
+    const long id = std::strtol(process.c_str() + (process.empty() ? 0 : 1), nullptr, 10);
+    if (id > 0 && kill(static_cast<pid_t>(id), 0) != 0 && errno == ESRCH) fs::remove(entry.path(), error);
+  }
 }
 
 void create_folder(const std::filesystem::path& folder) {

@@ -47,13 +47,13 @@ RigidPart rotated(const RigidPart& part, const Quat& q) {
 /// `number`: of the solve, counted over the run.
 FractureInput Simulation::fracture_input(const Hit& hit, std::size_t number,
                                          std::vector<rigid::BodyId>& partner_ids) const {
-  const Live& live = live_.at(hit.body);
+  const Live& live = state_.live.at(hit.body);
   const Piece& piece = piece_of(live);
   const Pose pose = world_.state(hit.body).pose;
   const Quat to_body = pose.orientation.conjugate();
   FractureInput input;
   input.mesh = piece.mesh;
-  input.material = live.origin->material;
+  input.material = origin_of(live).material;
   for (const rigid::Impact& impact : hit.impacts) {
     const auto known = std::find(partner_ids.begin(), partner_ids.end(), impact.body_b);
     mpm::Load load;
@@ -63,8 +63,8 @@ FractureInput Simulation::fracture_input(const Hit& hit, std::size_t number,
     load.approach_speed = impact.approach_speed;
     double inverse_radius = 1 / load.point.norm();
     const Material* other = scene_.ground ? &scene_.ground->material : nullptr;
-    if (const auto partner = live_.find(impact.body_b); partner != live_.end()) {
-      other = &partner->second.origin->material;
+    if (const auto partner = state_.live.find(impact.body_b); partner != state_.live.end()) {
+      other = &origin_of(partner->second).material;
       inverse_radius += 1 / impact.arm_b.norm();
     }
     load.pair.effective_radius = 1 / inverse_radius;
@@ -91,17 +91,16 @@ FractureInput Simulation::fracture_input(const Hit& hit, std::size_t number,
 void Simulation::break_bodies(const std::vector<Hit>& hits, Progress& progress) {
   std::vector<FractureInput> inputs;
   std::vector<std::vector<rigid::BodyId>> partners(hits.size());
-  for (std::size_t i = 0; i < hits.size(); ++i) {
-    live_.at(hits[i].body).last_solve = world_.time();
-    inputs.push_back(fracture_input(hits[i], report_.fractures.size() + i, partners[i]));
-  }
+  for (std::size_t i = 0; i < hits.size(); ++i)
+    inputs.push_back(fracture_input(hits[i], state_.report.fractures.size() + i, partners[i]));
   const std::vector<FractureOutcome> outcomes = fracture_all(inputs, progress);
   for (std::size_t i = 0; i < hits.size(); ++i) settle(hits[i], inputs[i], outcomes[i], partners[i]);
 }
 
 void Simulation::settle(const Hit& hit, const FractureInput& input, const FractureOutcome& outcome,
                         const std::vector<rigid::BodyId>& partners) {
-  Live& live = live_.at(hit.body);
+  Live& live = state_.live.at(hit.body);
+  live.last_solve = world_.time();
   FractureRecord record = record_of(input, outcome);
   record.piece = live.piece;
   record.body = piece_of(live).name;
@@ -114,30 +113,31 @@ void Simulation::settle(const Hit& hit, const FractureInput& input, const Fractu
     hand_over(hit, outcome, partners, record);
   else
     live.particles = outcome.own;
-  report_.fractures.push_back(record);
-  options_.on_fracture(report_.fractures.back());
+  state_.report.fractures.push_back(record);
+  options_.on_fracture(state_.report.fractures.back());
 }
 
 void Simulation::account(const FractureRecord& record, const FractureOutcome& outcome) {
-  report_.particle_steps += record.particles * record.steps;
-  report_.seconds.sample += record.seconds.sample;
-  report_.seconds.solve += record.seconds.solve;
-  report_.seconds.extract += record.seconds.extract;
-  report_.seconds.cut += record.seconds.cut;
-  for (const auto& [name, count] : outcome.fallbacks) report_.fallbacks[name] += count;
-  for (const std::string& trouble : outcome.cracked.troubles) report_.notes.push_back(record.body + ": " + trouble);
+  state_.report.particle_steps += record.particles * record.steps;
+  state_.report.seconds.sample += record.seconds.sample;
+  state_.report.seconds.solve += record.seconds.solve;
+  state_.report.seconds.extract += record.seconds.extract;
+  state_.report.seconds.cut += record.seconds.cut;
+  for (const auto& [name, count] : outcome.fallbacks) state_.report.fallbacks[name] += count;
+  for (const std::string& trouble : outcome.cracked.troubles)
+    state_.report.notes.push_back(record.body + ": " + trouble);
 }
 
 std::vector<Piece> Simulation::pieces_of(const Live& parent, const FractureOutcome& outcome,
                                          std::vector<RigidPart>& parts) const {
   const Piece& old = piece_of(parent);
-  const std::string& body = parent.origin->name;
-  const auto known =
-      std::count_if(sequence_.pieces.begin(), sequence_.pieces.end(), [&](const Piece& p) { return p.body == body; });
+  const std::string& body = origin_of(parent).name;
+  const auto known = std::count_if(state_.sequence.pieces.begin(), state_.sequence.pieces.end(),
+                                   [&](const Piece& p) { return p.body == body; });
   std::vector<Piece> pieces;
   for (const BrokenPiece& broken : outcome.pieces) {
     Piece piece;
-    piece.id = static_cast<int>(sequence_.pieces.size() + pieces.size());
+    piece.id = static_cast<int>(state_.sequence.pieces.size() + pieces.size());
     piece.name = fragment_name(body, static_cast<int>(known) + static_cast<int>(pieces.size()));
     piece.body = body;
     piece.parent = old.id;
@@ -147,7 +147,7 @@ std::vector<Piece> Simulation::pieces_of(const Live& parent, const FractureOutco
     piece.mesh = broken.fragment.mesh;
     for (int source : broken.fragment.source_face)
       piece.inside.push_back(source < 0 || old.inside[static_cast<std::size_t>(source)]);
-    parts.push_back(detail::centred(piece.mesh, parent.origin->material.density, piece));
+    parts.push_back(detail::centred(piece.mesh, origin_of(parent).material.density, piece));
     pieces.push_back(std::move(piece));
   }
   return pieces;
@@ -160,9 +160,10 @@ std::vector<Push> Simulation::pushes_of(const Hit& hit, const FractureOutcome& o
   std::vector<RigidPart> parts;
   std::vector<Twist> twists;
   std::vector<int> index(partners.size(), -1);
-  bool driven = motion_of(live_.at(hit.body)) != rigid::Motion::dynamic;
+  bool driven = motion_of(state_.live.at(hit.body)) != rigid::Motion::dynamic;
   for (std::size_t p = 0; p < partners.size(); ++p) {
-    driven = driven || (live_.contains(partners[p]) && motion_of(live_.at(partners[p])) == rigid::Motion::kinematic);
+    driven = driven ||
+             (state_.live.contains(partners[p]) && motion_of(state_.live.at(partners[p])) == rigid::Motion::kinematic);
     if (std::isinf(free_mass(partners[p]))) continue;
     index[p] = static_cast<int>(parts.size());
     parts.push_back(world_part(partners[p]));
@@ -177,7 +178,7 @@ std::vector<Push> Simulation::pushes_of(const Hit& hit, const FractureOutcome& o
   // What a driven or held body does or takes is not in the balance.
   const double share =
       driven ? 1.0 : affordable_share(world_part(hit.body), world_.state(hit.body).twist, parts, twists, pushes);
-  if (share < 1) ++report_.fallbacks["impulse_limited"];
+  if (share < 1) ++state_.report.fallbacks["impulse_limited"];
   for (Push& push : pushes) push.impulse *= share;
   return pushes;
 }
@@ -245,7 +246,7 @@ std::vector<Twist> Simulation::twists_of(const FractureOutcome& outcome, const s
 /// partners the opposite; the rigid solver's own impulse was taken back with the step.
 void Simulation::hand_over(const Hit& hit, const FractureOutcome& outcome, const std::vector<rigid::BodyId>& partners,
                            FractureRecord& record) {
-  const Live parent = live_.at(hit.body);
+  const Live parent = state_.live.at(hit.body);
   const rigid::BodyState state = world_.state(hit.body);
   const bool free = motion_of(parent) == rigid::Motion::dynamic;
   std::vector<RigidPart> body_parts, parts;
@@ -266,30 +267,30 @@ void Simulation::hand_over(const Hit& hit, const FractureOutcome& outcome, const
   push_partners(hit, pushes);
   std::vector<Twist> twists = twists_of(outcome, parts, state, delivered);
   // What the cracks took is no longer there to move the pieces.
-  const double crack_energy = parent.origin->material.fracture_energy * crack_area(outcome);
+  const double crack_energy = origin_of(parent).material.fracture_energy * crack_area(outcome);
   const double available = record.kinetic_before - energy_of(partners) - crack_energy;
   if (free && kinetic_energy(parts, twists) > available) {
     twists = with_energy_limit(parts, twists, available);
-    ++report_.fallbacks["fragment_energy_limited"];
+    ++state_.report.fallbacks["fragment_energy_limited"];
   }
 
   remove(hit.body);
-  ++fracture_count_[static_cast<std::size_t>(parent.origin_index)];
+  ++state_.fracture_count[static_cast<std::size_t>(parent.origin)];
   const std::vector<rigid::BodyId> ids = add_pieces(parent, outcome, pieces, body_parts, state.pose, twists);
   record.fragments = static_cast<int>(pieces.size());
   record.kinetic_after = kinetic_energy(parts, twists) + energy_of(partners);
   all = partners;
   all.insert(all.end(), ids.begin(), ids.end());
   if (free) record.momentum_error = relative_difference(expected, momentum_of(all, state.pose.position), parts, twists);
-  std::move(pieces.begin(), pieces.end(), std::back_inserter(sequence_.pieces));
+  std::move(pieces.begin(), pieces.end(), std::back_inserter(state_.sequence.pieces));
 }
 
 void Simulation::remove(rigid::BodyId id) {
-  const Live& live = live_.at(id);
-  sequence_.pieces[static_cast<std::size_t>(live.piece)].death_time = world_.time();
-  if (piece_of(live).generation > 0) --fragment_count_;
+  const Live& live = state_.live.at(id);
+  state_.sequence.pieces[static_cast<std::size_t>(live.piece)].death_time = world_.time();
+  if (piece_of(live).generation > 0) --state_.fragment_count;
   world_.remove(id);
-  live_.erase(id);
+  state_.live.erase(id);
 }
 
 /// Fragments of one fracture touch along their cracks: they are one family, whose first overlaps push nothing apart.
@@ -299,7 +300,7 @@ std::vector<rigid::BodyId> Simulation::add_pieces(const Live& parent, const Frac
   std::vector<Live> lives;
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     const RigidPart& part = parts[k];
-    Live live{pieces[k].id, parent.origin, parent.origin_index, {part.mass, Vec3::Zero(), part.inertia}};
+    Live live{pieces[k].id, parent.origin, {part.mass, Vec3::Zero(), part.inertia}};
     if (const auto& own = outcome.pieces[k].own) {
       Particles moved = *own;
       for (Vec3& x : moved.samples.points) x -= part.centre;
@@ -307,17 +308,17 @@ std::vector<rigid::BodyId> Simulation::add_pieces(const Live& parent, const Frac
     }
     lives.push_back(std::move(live));
   }
-  const double original = original_volume_[static_cast<std::size_t>(parent.origin_index)];
+  const double original = state_.original_volume[static_cast<std::size_t>(parent.origin)];
   std::vector<Hulls> hulls(pieces.size());
   tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t k) {
     hulls[k] = hulls_of(pieces[k], size_class(pieces[k].volume / original, scene_.fracture));
   });
-  ++families_;
-  fragment_count_ += static_cast<int>(pieces.size());
+  ++state_.families;
+  state_.fragment_count += static_cast<int>(pieces.size());
   std::vector<rigid::BodyId> ids;
   for (std::size_t k = 0; k < pieces.size(); ++k)
     ids.push_back(add_body(pieces[k], lives[k], std::move(hulls[k]), {pose * parts[k].centre, pose.orientation},
-                           twists[k], families_));
+                           twists[k], state_.families));
   return ids;
 }
 
@@ -331,9 +332,9 @@ void Simulation::note_coarse_grid(const Material& material, const FractureRecord
                 material.name.c_str(), record.band_width * 1e3, record.admissible_length * 1e3,
                 record.propagation_strength * 1e-6, record.tensile_strength * 1e-6,
                 scene_.fracture.damage == DamageModel::front ? "; new cracks still need the full strength" : "");
-  if (std::none_of(report_.notes.begin(), report_.notes.end(),
+  if (std::none_of(state_.report.notes.begin(), state_.report.notes.end(),
                    [&](const std::string& note) { return note.starts_with(material.name + ": the damage band"); }))
-    report_.notes.push_back(text);
+    state_.report.notes.push_back(text);
 }
 
 }  // namespace sunder::pipeline

@@ -26,6 +26,7 @@ struct RunArguments {
   std::optional<Quality> quality;
   std::optional<std::uint64_t> seed;
   int threads = 0;
+  bool resume = false;
 };
 
 const std::map<std::string, Quality> quality_words = {
@@ -62,6 +63,14 @@ int run_command(const RunArguments& arguments, LogFormat log) {
   options.out =
       arguments.out.empty() ? std::filesystem::path("out") / scene.name : std::filesystem::path(arguments.out);
   options.threads = arguments.threads;
+  options.resume = arguments.resume;
+  if (arguments.resume && is_complete(scene, options.out)) {
+    if (log == LogFormat::json)
+      say({{"event", "done"}, {"report", (options.out / "report.json").string()}});
+    else
+      std::cout << "nothing left to do: " << options.out.string() << " holds the complete run" << std::endl;
+    return 0;
+  }
   options.on_fracture = [&](const FractureRecord& f) {
     if (log == LogFormat::json)
       say(event(f));
@@ -78,7 +87,7 @@ int run_command(const RunArguments& arguments, LogFormat log) {
          {"report", (options.out / "report.json").string()}});
   else
     std::cout << summary(result.report, result.sequence)
-              << (result.report.interrupted ? "interrupted; what was finished is in " : "written to ")
+              << (result.report.interrupted ? "interrupted; --resume goes on with what is in " : "written to ")
               << options.out.string() << std::endl;
   return result.report.interrupted ? static_cast<int>(ErrorKind::interrupted) : 0;
 }
@@ -257,6 +266,7 @@ int dispatch(int argc, char** argv, LogFormat& log) {
   run_app->add_option("--quality", run_arguments.quality, "draft, preview or final; overrides the scene")
       ->transform(CLI::CheckedTransformer(quality_words));
   run_app->add_option("--threads", run_arguments.threads, "Threads to use (default: all)")->check(CLI::Range(1, 1024));
+  run_app->add_flag("--resume", run_arguments.resume, "Go on where a run into the same folder was stopped");
   run_app->add_option("--seed", run_arguments.seed, "Overrides the scene's seed");
   run_app->add_option("--log", log, "text or json")->transform(CLI::CheckedTransformer(log_words));
 

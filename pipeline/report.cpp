@@ -187,6 +187,7 @@ std::string to_json(const Report& report, const Sequence& sequence) {
       {"version", SUNDER_VERSION},
       {"git", SUNDER_GIT},
       {"scene", report.scene},
+      {"fingerprint", report.fingerprint},
       {"seed", report.seed},
       {"quality", report.quality},
       {"threads", report.threads},
@@ -211,7 +212,8 @@ std::string to_json(const Report& report, const Sequence& sequence) {
         {"solve", s.solve},
         {"extract", s.extract},
         {"cut", s.cut},
-        {"export", s.write}}},
+        {"export", s.write},
+        {"checkpoint", s.checkpoint}}},
       {"peak_memory_mb", report.peak_memory_mb}};
   if (report.extract) json["extract"] = extract_json(*report.extract);
   return json.dump(2) + "\n";

@@ -57,6 +57,7 @@ struct RepairRecord {
 
 struct Report {
   std::string scene, quality;
+  std::string fingerprint;  ///< of all that decides the results (pipeline/checkpoint.h)
   std::uint64_t seed = 0;
   int threads = 0;
   bool interrupted = false;
@@ -67,7 +68,7 @@ struct Report {
   long particle_steps = 0;
   double cut_volume_error = 0;  ///< of a cut that no fracture made
   struct Seconds {
-    double total = 0, setup = 0, rigid = 0, sample = 0, solve = 0, extract = 0, cut = 0, write = 0;
+    double total = 0, setup = 0, rigid = 0, sample = 0, solve = 0, extract = 0, cut = 0, write = 0, checkpoint = 0;
   } seconds;
   Fallbacks fallbacks;
   double peak_memory_mb = 0;

@@ -1,13 +1,17 @@
 #include "pipeline/run.h"
 
 #include <cmath>
+#include <fstream>
 #include <thread>
 
+#include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
 #include "core/stopwatch.h"
+#include "pipeline/checkpoint.h"
 #include "pipeline/quality.h"
 #include "pipeline/simulation.h"
+#include "sunder_version.h"
 
 namespace sunder::pipeline {
 namespace {
@@ -35,67 +39,109 @@ void remove_stale_frames(const std::filesystem::path& folder, const Sequence& se
   }
 }
 
-class Recorder {
+/// A run from its beginning or from a checkpoint.
+class Run {
  public:
-  Recorder(const Scene& scene, const RunOptions& options, Simulation& simulation)
-      : scene_(scene), options_(options), simulation_(simulation) {}
+  Run(const Scene& scene, const RunOptions& options, Progress& progress)
+      : scene_(scene), options_(options), fingerprint_(fingerprint(scene)) {
+    std::optional<Checkpoint> checkpoint;
+    if (options.resume) checkpoint = read_checkpoint(file(), fingerprint_);
+    if (checkpoint) {
+      steps_ = checkpoint->steps;
+      simulation_.emplace(scene, options, checkpoint->world, std::move(checkpoint->simulation));
+    } else {
+      simulation_.emplace(scene, options, progress);
+      record();
+    }
+  }
 
-  void frame() {
-    simulation_.record_frame();
-    if (!scene_.outputs.obj) return;
-    const Stopwatch watch(simulation_.report().seconds.write);
-    write_obj_frame(simulation_.sequence(), simulation_.sequence().frames.size() - 1, options_.out);
+  /// Steps through the frames that are left; false when the user stopped it.
+  bool finish(Progress& progress) {
+    const int frames = frame_count(scene_);
+    try {
+      for (int done = frames_done(); done < frames; ++done) {
+        progress.checkpoint("total", static_cast<double>(done - 1) / (frames - 1));
+        for (; steps_ < simulation_->steps_per_frame(); ++steps_) simulation_->step(progress);
+        steps_ = 0;
+        record();
+        const int interval = scene_.outputs.checkpoint_interval;
+        if (interval > 0 && frames_done() % interval == 0 && frames_done() < frames) save();
+      }
+      progress.report("total", 1);
+      return true;
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::interrupted) throw;
+      save();
+      return false;
+    }
+  }
+
+  Simulation& simulation() { return *simulation_; }
+  const std::string& scene_fingerprint() const { return fingerprint_; }
+  void remove_checkpoint() const {
+    std::error_code ignored;
+    std::filesystem::remove(file(), ignored);
   }
 
  private:
+  std::filesystem::path file() const { return options_.out / "checkpoint.bin"; }
+  int frames_done() const { return static_cast<int>(simulation_->sequence().frames.size()); }
+
+  void record() {
+    simulation_->record_frame();
+    if (!scene_.outputs.obj) return;
+    const Stopwatch watch(simulation_->report().seconds.write);
+    write_obj_frame(simulation_->sequence(), simulation_->sequence().frames.size() - 1, options_.out);
+  }
+
+  void save() {
+    const Stopwatch watch(simulation_->report().seconds.checkpoint);
+    write_checkpoint(file(), fingerprint_, steps_, *simulation_);
+  }
+
   const Scene& scene_;
   const RunOptions& options_;
-  Simulation& simulation_;
+  std::string fingerprint_;
+  std::optional<Simulation> simulation_;
+  int steps_ = 0;  ///< since the last frame
 };
-
-/// Steps through all frames; false when the user stopped it.
-bool simulate(const Scene& scene, Simulation& simulation, Recorder& recorder, Progress& progress) {
-  const int frames = frame_count(scene);
-  try {
-    recorder.frame();
-    for (int frame = 1; frame < frames; ++frame) {
-      progress.checkpoint("total", static_cast<double>(frame - 1) / (frames - 1));
-      for (int n = 0; n < simulation.steps_per_frame(); ++n) simulation.step(progress);
-      recorder.frame();
-    }
-    progress.report("total", 1);
-    return true;
-  } catch (const Error& error) {
-    if (error.kind() != ErrorKind::interrupted) throw;
-    return false;
-  }
-}
 
 }  // namespace
 
+bool is_complete(const Scene& scene, const std::filesystem::path& out) {
+  std::ifstream in(out / "report.json");
+  if (!in) return false;
+  const auto report = nlohmann::json::parse(in, nullptr, false);
+  return report.is_object() && report.value("fingerprint", "") == fingerprint(scene) &&
+         report.value("git", "") == SUNDER_GIT && !report.value("interrupted", true);
+}
+
 RunResult run(const Scene& scene, const RunOptions& options, Progress& progress) {
   create_folder(options.out);
+  remove_abandoned(options.out);
   double total = 0;
   RunResult result;
   {
     const Stopwatch watch(total);
-    Simulation simulation(scene, options, progress);
-    Recorder recorder(scene, options, simulation);
-    const bool complete = simulate(scene, simulation, recorder, progress);
+    Run run(scene, options, progress);
+    Simulation& simulation = run.simulation();
+    const bool complete = run.finish(progress);
     result.report = simulation.report();
+    result.report.fingerprint = run.scene_fingerprint();
     result.report.interrupted = !complete;
     result.report.effects = effect_records(simulation.effects(), total_work(result.report.fractures));
     result.sequence = simulation.take_sequence();
     if (scene.outputs.obj && complete) remove_stale_frames(options.out, result.sequence);
     const Stopwatch writing(result.report.seconds.write);
     if (scene.outputs.glb) write_glb(result.sequence, options.out / "fragments.glb");
+    if (complete) run.remove_checkpoint();
   }
   Report& report = result.report;
   report.scene = scene.name;
   report.quality = name_of(scene.quality);
   report.seed = scene.seed;
   report.threads = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
-  report.seconds.total = total;
+  report.seconds.total += total;
   report.peak_memory_mb = peak_memory_mb();
   write_atomically(options.out / "report.json", to_json(report, result.sequence));
   return result;

@@ -14,19 +14,25 @@ namespace sunder::pipeline {
 struct RunOptions {
   std::filesystem::path out;  ///< folder for the results; created when missing
   int threads = 0;            ///< 0: all
+  bool resume = false;        ///< go on from the checkpoint in `out`, if there is one
   std::function<void(const FractureRecord&)> on_fracture = [](const FractureRecord&) {};  ///< called after every solve
 };
 
 struct RunResult {
-  Sequence sequence;
+  Sequence sequence;  ///< empty when the run was complete already
   Report report;
 };
 
+/// True when `out` holds the report of a complete run of this scene, by this build.
+bool is_complete(const Scene& scene, const std::filesystem::path& out);
+
 /// Bodies move; an impact over the threshold starts a solve of the body that was hit, the step is taken back and
 /// repeated with the fragments in its place. Writes OBJ frames as they are finished, then fragments.glb and
-/// report.json. When `progress` is cancelled, what was finished is written, report.interrupted is set, and the result
-/// returned. Errors: ErrorKind::usage for bodies that overlap at the start, ErrorKind::mesh, ErrorKind::unstable,
-/// ErrorKind::io.
+/// report.json. Every scene.outputs.checkpoint_interval frames the state goes to checkpoint.bin, which a complete run
+/// removes. When `progress` is cancelled, what was finished and the state are written, report.interrupted is set, and
+/// the result returned. A resumed run writes the same bytes as one that was never stopped, times in report.json apart.
+/// Errors: ErrorKind::usage for bodies that overlap at the start and those of read_checkpoint, ErrorKind::mesh,
+/// ErrorKind::unstable, ErrorKind::io.
 RunResult run(const Scene& scene, const RunOptions& options, Progress& progress);
 
 }  // namespace sunder::pipeline

@@ -75,6 +75,7 @@ struct FractureSettings {
 struct Outputs {
   bool obj = true;
   bool glb = true;
+  int checkpoint_interval = 10;  ///< frames between two checkpoints; 0: only when the run is stopped
 };
 
 struct Scene {

@@ -104,9 +104,13 @@ constexpr std::array<Key<FractureSettings>, 14> kFractureKeys = {{
     {"voxel_size", [](const Value& value, FractureSettings& settings) { settings.voxel_size = value.positive(); }},
 }};
 
-constexpr std::array<Key<Outputs>, 2> kOutputKeys = {{
+constexpr std::array<Key<Outputs>, 3> kOutputKeys = {{
     {"obj", [](const Value& value, Outputs& outputs) { outputs.obj = value.flag(); }},
     {"glb", [](const Value& value, Outputs& outputs) { outputs.glb = value.flag(); }},
+    {"checkpoint_interval",
+     [](const Value& value, Outputs& outputs) {
+       outputs.checkpoint_interval = static_cast<int>(value.integer(0, kMaximumCount));
+     }},
 }};
 
 const std::vector<std::string>& top_level_keys() {

@@ -67,4 +67,7 @@ void create_folder(const std::filesystem::path& folder);
 /// sees half of it. Errors: ErrorKind::io with the system's reason; the temporary file is removed.
 void write_atomically(const std::filesystem::path& file, std::string_view bytes);
 
+/// Removes the temporary files that processes left behind which were killed as they wrote to the folder.
+void remove_abandoned(const std::filesystem::path& folder);
+
 }  // namespace sunder::pipeline

@@ -45,27 +45,42 @@ Simulation::Simulation(const Scene& scene, const RunOptions& options, Progress& 
       options_(options),
       steps_per_frame_(steps_in_frame(scene)),
       world_(world_settings(scene, steps_per_frame_)) {
-  sequence_.name = scene.name;
-  sequence_.frame_rate = scene.frame_rate;
-  sequence_.start_frame = scene.start_frame;
-  original_volume_.resize(scene.bodies.size());
-  fracture_count_.resize(scene.bodies.size());
-  const Stopwatch watch(report_.seconds.setup);
+  state_.sequence.name = scene.name;
+  state_.sequence.frame_rate = scene.frame_rate;
+  state_.sequence.start_frame = scene.start_frame;
+  state_.original_volume.resize(scene.bodies.size());
+  state_.fracture_count.resize(scene.bodies.size());
+  const Stopwatch watch(state_.report.seconds.setup);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     progress.checkpoint("setup", static_cast<double>(b) / static_cast<double>(scene.bodies.size()));
     place(scene.bodies[b], static_cast<int>(b));
   }
-  std::vector<double> sizes;
-  for (const Piece& piece : sequence_.pieces) sizes.push_back(extent_of(piece));
-  effects_ = plan_effects(scene, sizes);
+  plan_effects_of_bodies();
   require_no_overlap();
+}
+
+Simulation::Simulation(const Scene& scene, const RunOptions& options, const rigid::World::State& world,
+                       SimulationState state)
+    : scene_(scene),
+      options_(options),
+      steps_per_frame_(steps_in_frame(scene)),
+      world_(world_settings(scene, steps_per_frame_), world),
+      state_(std::move(state)) {
+  plan_effects_of_bodies();
+}
+
+/// The first pieces are the scene's bodies.
+void Simulation::plan_effects_of_bodies() {
+  std::vector<double> sizes;
+  for (std::size_t b = 0; b < scene_.bodies.size(); ++b) sizes.push_back(extent_of(state_.sequence.pieces[b]));
+  effects_ = plan_effects(scene_, sizes);
 }
 
 void Simulation::place(const SceneBody& body, int index) {
   BodyMesh source = body_mesh(body);
-  if (!source.repairs.empty()) report_.repairs.push_back({body.name, source.repairs});
+  if (!source.repairs.empty()) state_.report.repairs.push_back({body.name, source.repairs});
   Piece piece;
-  piece.id = static_cast<int>(sequence_.pieces.size());
+  piece.id = static_cast<int>(state_.sequence.pieces.size());
   piece.name = piece.body = body.name;
   piece.material = body.material.name;
   piece.mesh = std::move(source.mesh);
@@ -73,11 +88,11 @@ void Simulation::place(const SceneBody& body, int index) {
   const Pose pose{part.centre, Quat::Identity()};
   part.centre.setZero();
   piece.inside.assign(piece.mesh.faces.size(), false);
-  original_volume_[static_cast<std::size_t>(index)] = piece.volume;
-  Live live{piece.id, &body, index, part};
+  state_.original_volume[static_cast<std::size_t>(index)] = piece.volume;
+  Live live{piece.id, index, part};
   live.start = pose.position;
   add_body(piece, live, hulls_of(piece, SizeClass::nearly_whole), pose, {body.velocity, body.angular_velocity}, 0);
-  sequence_.pieces.push_back(std::move(piece));
+  state_.sequence.pieces.push_back(std::move(piece));
 }
 
 /// Empty when the piece is too thin for a hull.
@@ -93,43 +108,45 @@ rigid::BodyId Simulation::add_body(const Piece& piece, const Live& live, Hulls h
     const Box box = geometry::bounds(piece.mesh);
     setup.hulls = {geometry::transformed(geometry::box(box.sizes().cwiseMax(1e-3 * box.sizes().maxCoeff())),
                                          Mat3::Identity(), box.center())};
-    ++report_.fallbacks["sliver_collides_as_box"];
+    ++state_.report.fallbacks["sliver_collides_as_box"];
   }
   setup.mass = live.part.mass;
   setup.inertia = live.part.inertia;
   setup.pose = pose;
   setup.twist = twist;
-  setup.motion = piece.generation > 0 ? rigid::Motion::dynamic : live.origin->motion;
-  setup.restitution = live.origin->material.restitution;
-  setup.friction = live.origin->material.friction;
+  setup.motion = piece.generation > 0 ? rigid::Motion::dynamic : origin_of(live).motion;
+  setup.restitution = origin_of(live).material.restitution;
+  setup.friction = origin_of(live).material.friction;
   setup.family = family;
   const rigid::BodyId id = world_.add(setup);
-  live_.emplace(id, live);
+  state_.live.emplace(id, live);
   return id;
 }
 
 void Simulation::require_no_overlap() const {
   for (const rigid::World::Overlap& o : world_.overlaps()) {
-    const Piece& a = piece_of(live_.at(o.body_a));
+    const Piece& a = piece_of(state_.live.at(o.body_a));
     const bool on_ground = o.body_b == rigid::ground_id;
-    const double size = on_ground ? extent_of(a) : std::min(extent_of(a), extent_of(piece_of(live_.at(o.body_b))));
+    const double size =
+        on_ground ? extent_of(a) : std::min(extent_of(a), extent_of(piece_of(state_.live.at(o.body_b))));
     if (o.depth <= tolerated_overlap * size) continue;
     char depth[32];
     std::snprintf(depth, sizeof depth, "%.3g mm", o.depth * 1e3);
-    throw Error(ErrorKind::usage, scene_.file.string() + ":" + std::to_string(live_.at(o.body_a).origin->line) +
-                                      ": body '" + a.name + "' overlaps " +
-                                      (on_ground ? "the ground" : "body '" + piece_of(live_.at(o.body_b)).name + "'") +
-                                      " by " + depth + " at the start; move one of them");
+    throw Error(ErrorKind::usage,
+                scene_.file.string() + ":" + std::to_string(origin_of(state_.live.at(o.body_a)).line) + ": body '" +
+                    a.name + "' overlaps " +
+                    (on_ground ? "the ground" : "body '" + piece_of(state_.live.at(o.body_b)).name + "'") + " by " +
+                    depth + " at the start; move one of them");
   }
 }
 
 bool Simulation::may_break(const Live& live, double now) const {
   const Piece& piece = piece_of(live);
-  const std::size_t origin = static_cast<std::size_t>(live.origin_index);
-  if (!live.origin->breakable || !live.origin->material.breakable) return false;
+  const std::size_t origin = static_cast<std::size_t>(live.origin);
+  if (!origin_of(live).breakable || !origin_of(live).material.breakable) return false;
   if (piece.generation > 0 && !(with_optional_effects && effects_.runs(Effect::secondary_fracture))) return false;
-  if (fracture_count_[origin] >= scene_.fracture.maximum_fractures) return false;
-  if (fragment_count_ >= scene_.fracture.maximum_fragments) return false;
+  if (state_.fracture_count[origin] >= scene_.fracture.maximum_fractures) return false;
+  if (state_.fragment_count >= scene_.fracture.maximum_fragments) return false;
   if (share_of(live) < minimum_volume(scene_.fracture)) return false;
   const double delay = scene_.fracture.refracture_delay;
   if (piece.generation > 0 && now - piece.birth_time < delay) return false;
@@ -137,27 +154,27 @@ bool Simulation::may_break(const Live& live, double now) const {
 }
 
 const Piece& Simulation::piece_of(const Live& live) const {
-  return sequence_.pieces[static_cast<std::size_t>(live.piece)];
+  return state_.sequence.pieces[static_cast<std::size_t>(live.piece)];
 }
 
 /// Of the volume of the scene's body that it comes from.
 double Simulation::share_of(const Live& live) const {
-  return piece_of(live).volume / original_volume_[static_cast<std::size_t>(live.origin_index)];
+  return piece_of(live).volume / state_.original_volume[static_cast<std::size_t>(live.origin)];
 }
 
 SizeClass Simulation::size_of(const Live& live) const { return size_class(share_of(live), scene_.fracture); }
 
 /// Infinite for the ground and for bodies that do not yield.
 double Simulation::free_mass(rigid::BodyId id) const {
-  const auto live = live_.find(id);
-  if (live == live_.end() || motion_of(live->second) != rigid::Motion::dynamic)
+  const auto live = state_.live.find(id);
+  if (live == state_.live.end() || motion_of(live->second) != rigid::Motion::dynamic)
     return std::numeric_limits<double>::infinity();
   return live->second.part.mass;
 }
 
 /// Fragments fly free whatever held their body.
 rigid::Motion Simulation::motion_of(const Live& live) const {
-  return piece_of(live).generation > 0 ? rigid::Motion::dynamic : live.origin->motion;
+  return piece_of(live).generation > 0 ? rigid::Motion::dynamic : origin_of(live).motion;
 }
 
 /// About its own centre of mass, in world axes.
@@ -171,10 +188,10 @@ double Simulation::energy_of(rigid::BodyId id) const {
 
 /// Not set in the scene: the impulse whose energy could just open one crack of area V^(2/3).
 double Simulation::minimum_impulse(const Live& live, double partner_mass) const {
-  if (live.origin->minimum_impulse) return *live.origin->minimum_impulse;
+  if (origin_of(live).minimum_impulse) return *origin_of(live).minimum_impulse;
   if (scene_.fracture.minimum_impulse) return *scene_.fracture.minimum_impulse;
   const Piece& piece = piece_of(live);
-  const double energy = live.origin->material.fracture_energy * std::pow(piece.volume, 2.0 / 3);
+  const double energy = origin_of(live).material.fracture_energy * std::pow(piece.volume, 2.0 / 3);
   const double m = std::isinf(partner_mass) ? piece.mass : piece.mass * partner_mass / (piece.mass + partner_mass);
   return std::sqrt(2 * m * energy);
 }
@@ -183,8 +200,8 @@ std::vector<Simulation::Hit> Simulation::breaking_hits(const std::vector<rigid::
   std::map<rigid::BodyId, Hit> hits;
   std::map<std::pair<rigid::BodyId, rigid::BodyId>, double> impulse;
   const auto add = [&](const rigid::Impact& impact) {
-    const auto live = live_.find(impact.body_a);
-    if (live == live_.end() || !may_break(live->second, now)) return;
+    const auto live = state_.live.find(impact.body_a);
+    if (live == state_.live.end() || !may_break(live->second, now)) return;
     Hit& hit = hits[impact.body_a];
     hit.body = impact.body_a;
     hit.impacts.push_back(impact);
@@ -202,7 +219,7 @@ std::vector<Simulation::Hit> Simulation::breaking_hits(const std::vector<rigid::
   for (const auto& [pair, sum] : impulse) {
     Hit& hit = hits.at(pair.first);
     hit.impulse += sum;
-    hit.severity = std::max(hit.severity, sum / minimum_impulse(live_.at(pair.first), free_mass(pair.second)));
+    hit.severity = std::max(hit.severity, sum / minimum_impulse(state_.live.at(pair.first), free_mass(pair.second)));
   }
   std::vector<Hit> chosen;
   for (auto& [body, hit] : hits)
@@ -221,15 +238,15 @@ std::vector<Simulation::Hit> Simulation::breaking_hits(const std::vector<rigid::
 }
 
 std::vector<rigid::Impact> Simulation::step_world() {
-  const Stopwatch watch(report_.seconds.rigid);
+  const Stopwatch watch(state_.report.seconds.rigid);
   return world_.step();
 }
 
 /// Bodies on a path get the motion that takes them to where they are to be at the end of the step.
 void Simulation::drive_bodies() {
   const double end = world_.time() + 1 / (scene_.frame_rate * steps_per_frame_);
-  for (const auto& [id, live] : live_) {
-    const SceneBody& body = *live.origin;
+  for (const auto& [id, live] : state_.live) {
+    const SceneBody& body = origin_of(live);
     if (body.path.empty() || motion_of(live) != rigid::Motion::kinematic) continue;
     const Pose anchor = pose_at(body.path, end);
     const Quat turn = anchor.orientation * body.orientation.conjugate();
@@ -255,10 +272,10 @@ void Simulation::step(Progress& progress) {
 void Simulation::record_frame() {
   Frame frame;
   frame.time = world_.time();
-  for (const auto& [id, live] : live_) frame.poses.push_back({live.piece, world_.state(id).pose});
+  for (const auto& [id, live] : state_.live) frame.poses.push_back({live.piece, world_.state(id).pose});
   std::sort(frame.poses.begin(), frame.poses.end(),
             [](const PiecePose& a, const PiecePose& b) { return a.piece < b.piece; });
-  sequence_.frames.push_back(std::move(frame));
+  state_.sequence.frames.push_back(std::move(frame));
 }
 
 }  // namespace sunder::pipeline

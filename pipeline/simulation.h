@@ -15,35 +15,50 @@
 
 namespace sunder::pipeline {
 
+/// A body of the world that stands for a piece.
+struct Live {
+  int piece = 0;
+  int origin = 0;                                        ///< index of the scene's body it comes from
+  RigidPart part;                                        ///< in the piece's frame
+  Vec3 start = Vec3::Zero();                             ///< of a body of the scene: its first position
+  double last_solve = -1e300;                            ///< [s]
+  std::shared_ptr<const Particles> particles = nullptr;  ///< of its last solve, in the piece's frame
+};
+
+/// What a simulation has made of its scene so far, beside the world: together they are all of its state.
+struct SimulationState {
+  Sequence sequence;
+  Report report;
+  std::map<rigid::BodyId, Live> live;
+  std::vector<double> original_volume;  ///< by scene body
+  std::vector<int> fracture_count;      ///< by scene body, with all its fragments
+  int families = 0, fragment_count = 0;
+};
+
 class Simulation {
  public:
   /// Places the scene's bodies. Errors: ErrorKind::mesh, ErrorKind::usage (overlap at the start).
   Simulation(const Scene& scene, const RunOptions& options, Progress& progress);
+  /// Goes on from where another one was.
+  Simulation(const Scene& scene, const RunOptions& options, const rigid::World::State& world, SimulationState state);
 
   /// Time of the next step's end [s].
   double time() const { return world_.time(); }
-  /// Advances the world by one step; bodies that were hit hard enough break within it.
+  /// Advances the world by one step; bodies that were hit hard enough break within it. After ErrorKind::interrupted the
+  /// step can be taken again, to the same result.
   void step(Progress& progress);
   /// Adds the present poses to the sequence.
   void record_frame();
 
-  const Sequence& sequence() const { return sequence_; }
-  Sequence take_sequence() { return std::move(sequence_); }
-  Report& report() { return report_; }
+  const Sequence& sequence() const { return state_.sequence; }
+  Sequence take_sequence() { return std::move(state_.sequence); }
+  Report& report() { return state_.report; }
   const EffectPlan& effects() const { return effects_; }
   int steps_per_frame() const { return steps_per_frame_; }
+  const SimulationState& state() const { return state_; }
+  rigid::World::State world_state() const { return world_.state(); }
 
  private:
-  /// A body of the world that stands for a piece.
-  struct Live {
-    int piece = 0;
-    const SceneBody* origin = nullptr;
-    int origin_index = 0;
-    RigidPart part;                                        ///< in the piece's frame
-    Vec3 start = Vec3::Zero();                             ///< of a body of the scene: its first position
-    double last_solve = -1e300;                            ///< [s]
-    std::shared_ptr<const Particles> particles = nullptr;  ///< of its last solve, in the piece's frame
-  };
   using Hulls = std::vector<geometry::TriangleMesh>;
   /// The impacts that one body takes in one step.
   struct Hit {
@@ -54,6 +69,7 @@ class Simulation {
 
   static Hulls hulls_of(const Piece& piece, SizeClass size);
   void place(const SceneBody& body, int index);
+  void plan_effects_of_bodies();
   std::vector<rigid::Impact> step_world();
   void require_no_overlap() const;
   rigid::BodyId add_body(const Piece& piece, const Live& live, Hulls hulls, const Pose& pose, const Twist& twist,
@@ -67,6 +83,7 @@ class Simulation {
   double energy_of(const std::vector<rigid::BodyId>& ids) const;
   double minimum_impulse(const Live& live, double partner_mass) const;
   const Piece& piece_of(const Live& live) const;
+  const SceneBody& origin_of(const Live& live) const { return scene_.bodies[static_cast<std::size_t>(live.origin)]; }
   double share_of(const Live& live) const;
   SizeClass size_of(const Live& live) const;
   void drive_bodies();
@@ -94,14 +111,9 @@ class Simulation {
   const Scene& scene_;
   const RunOptions& options_;
   int steps_per_frame_;
-  EffectPlan effects_;
   rigid::World world_;
-  Sequence sequence_;
-  Report report_;
-  std::map<rigid::BodyId, Live> live_;
-  std::vector<double> original_volume_;  ///< by scene body
-  std::vector<int> fracture_count_;      ///< by scene body, with all its fragments
-  int families_ = 0, fragment_count_ = 0;
+  EffectPlan effects_;
+  SimulationState state_;
 };
 
 }  // namespace sunder::pipeline

@@ -35,7 +35,7 @@ const std::map<std::string, std::set<std::string>> libraries = {
      {"btBulletDynamicsCommon.h", "btBulletCollisionCommon.h", "BulletCollision", "BulletDynamics", "LinearMath",
       "tbb"}},
     {"validation", {}},
-    {"pipeline", {"CLI", "toml++", "nlohmann", "tiny_gltf.h", "tbb"}},
+    {"pipeline", {"CLI", "cereal", "toml++", "nlohmann", "tiny_gltf.h", "tbb"}},
 };
 
 struct Include {

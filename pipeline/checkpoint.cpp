@@ -1,0 +1,121 @@
+#include "pipeline/checkpoint.h"
+
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+
+#include "core/error.h"
+#include "pipeline/detail/archive.h"
+#include "pipeline/sequence.h"
+#include "sunder_version.h"
+
+namespace sunder::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string magic = "sunder checkpoint 1\n";
+const std::string build = std::string(SUNDER_VERSION) + " (" + SUNDER_GIT + ")";
+
+/// FNV-1a over everything it is given.
+class Hash {
+ public:
+  void add(std::string_view bytes) {
+    for (const char c : bytes) value_ = (value_ ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+  }
+  void add(double number) { add({reinterpret_cast<const char*>(&number), sizeof number}); }
+  void add_file(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    std::ostringstream text;
+    text << in.rdbuf();
+    add(text.str());
+  }
+  std::string digits() const {
+    char text[17];
+    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value_));
+    return text;
+  }
+
+ private:
+  std::uint64_t value_ = 14695981039346656037ULL;
+};
+
+std::string hash_of(std::string_view bytes) {
+  Hash hash;
+  hash.add(bytes);
+  return hash.digits();
+}
+
+[[noreturn]] void damaged(const fs::path& file, const std::string& what) {
+  throw Error(ErrorKind::io, file.string() + ": " + what + "; run without --resume to start again");
+}
+
+/// What stands before the state.
+struct Header {
+  std::string build, scene, state_hash;
+};
+
+template <class Archive>
+void serialize(Archive& archive, Header& header) {
+  archive(header.build, header.scene, header.state_hash);
+}
+
+}  // namespace
+
+std::string fingerprint(const Scene& scene) {
+  Hash hash;
+  hash.add_file(scene.file);
+  hash.add_file(default_assets().materials);
+  hash.add_file(default_assets().meshes);
+  for (const SceneBody& body : scene.bodies) hash.add_file(body.mesh.file);
+  for (const double number : {scene.duration, scene.frame_rate, static_cast<double>(scene.quality)}) hash.add(number);
+  hash.add(std::to_string(scene.seed));
+  return hash.digits();
+}
+
+void write_checkpoint(const fs::path& file, const std::string& scene_fingerprint, int steps,
+                      const Simulation& simulation) {
+  std::ostringstream state(std::ios::binary);
+  {
+    cereal::BinaryOutputArchive archive(state);
+    archive(steps, simulation.world_state(), simulation.state());
+  }
+  std::ostringstream out(std::ios::binary);
+  out << magic;
+  cereal::BinaryOutputArchive header(out);
+  header(Header{build, scene_fingerprint, hash_of(state.view())});
+  out << state.view();
+  write_atomically(file, out.view());
+}
+
+std::optional<Checkpoint> read_checkpoint(const fs::path& file, const std::string& scene_fingerprint) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return std::nullopt;
+  std::string first(magic.size(), '\0');
+  if (!in.read(first.data(), static_cast<std::streamsize>(first.size())) || first != magic)
+    damaged(file, "not a checkpoint of this version");
+  try {
+    Header header;
+    cereal::BinaryInputArchive head(in);
+    head(header);
+    if (header.build != build)
+      throw Error(ErrorKind::usage, file.string() + ": the checkpoint is of build " + header.build + ", this is " +
+                                        build + "; resume with that one, or run without --resume to start again");
+    if (header.scene != scene_fingerprint)
+      throw Error(ErrorKind::usage, file.string() +
+                                        ": the checkpoint is of another scene, or the scene, a mesh, the seed or the "
+                                        "quality has changed since; run without --resume to start again");
+    std::ostringstream rest(std::ios::binary);
+    rest << in.rdbuf();
+    if (hash_of(rest.view()) != header.state_hash) damaged(file, "the checkpoint is damaged");
+    std::istringstream state(rest.str(), std::ios::binary);
+    cereal::BinaryInputArchive archive(state);
+    Checkpoint checkpoint;
+    archive(checkpoint.steps, checkpoint.world, checkpoint.simulation);
+    return checkpoint;
+  } catch (const cereal::Exception&) {
+    damaged(file, "the checkpoint is damaged");
+  }
+}
+
+}  // namespace sunder::pipeline
