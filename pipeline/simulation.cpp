@@ -34,13 +34,14 @@ int steps_in_frame(const Scene& scene) {
   return static_cast<int>(std::ceil(settings_of(scene.quality).rigid_rate / scene.frame_rate - 1e-9));
 }
 
-/// Collision cost grows with the product of the parts of two bodies, and the shape of a small fragment hardly shows.
+/// Collision cost grows with the product of the parts of two bodies, and the shape of a small fragment hardly shows. A
+/// whole body may be a ball, which takes many vertices to roll.
 geometry::ConvexPartsSettings collision_detail(double share_of_original) {
-  if (share_of_original < 0.005) return {.max_parts = 1, .excess = 0.1, .max_hull_vertices = 16};
-  if (share_of_original < 0.05) return {.max_parts = 2, .excess = 0.1, .max_hull_vertices = 24};
-  if (share_of_original < 0.2) return {.max_parts = 4, .excess = 0.1, .max_hull_vertices = 24};
-  if (share_of_original < 0.98) return {.max_parts = 8, .excess = 0.1, .max_hull_vertices = 24};
-  return {.max_parts = 16, .excess = 0.05, .max_hull_vertices = 32};
+  if (share_of_original < 0.002) return {.max_parts = 1, .gap = 0.02, .max_hull_vertices = 24};
+  if (share_of_original < 0.02) return {.max_parts = 4, .gap = 0.01, .max_hull_vertices = 32};
+  if (share_of_original < 0.2) return {.max_parts = 10, .gap = 0.01, .max_hull_vertices = 48};
+  if (share_of_original < 0.98) return {.max_parts = 20, .gap = 0.005, .max_hull_vertices = 64};
+  return {.max_parts = 40, .gap = 0.005, .max_hull_vertices = 256};
 }
 
 double size_of(const Piece& piece) { return geometry::bounds(piece.mesh).sizes().maxCoeff(); }
