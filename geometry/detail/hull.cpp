@@ -95,7 +95,8 @@ class GreedyHull {
     std::array<int, 3> across{};  // the faces beyond the edges from corner k to the next
     int points = kNone;           // the first of those above it
     int farthest = kNone;
-    bool alive = true;
+    bool alive = true, has_outward = false;
+    std::array<Vec3, 3> outward;  // in the plane, square to the edges; made when first needed
   };
 
   void add_face(const Triangle& corners) {
@@ -107,14 +108,24 @@ class GreedyHull {
     reach_.push_back(0);
   }
 
+  void find_outward(Face& face) const {
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 edge = points_[face.corners[(k + 1) % 3]] - points_[face.corners[k]];
+      face.outward[k] = edge.cross(face.normal);
+    }
+    face.has_outward = true;
+  }
+
   // Beyond a sharp edge a point is far away although it is hardly above any face.
-  double distance(const Face& face, const Vec3& x) const {
+  double distance(Face& face, const Vec3& x) const {
+    if (!face.has_outward) find_outward(face);
     bool over_face = true;
     double nearest = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 3; ++k) {
-      const Vec3 &a = points_[face.corners[k]], edge = points_[face.corners[(k + 1) % 3]] - a;
-      if (edge.cross(face.normal).dot(x - a) <= 0) continue;
+      const Vec3& a = points_[face.corners[k]];
+      if (face.outward[k].dot(x - a) <= 0) continue;
       over_face = false;
+      const Vec3 edge = points_[face.corners[(k + 1) % 3]] - a;
       const double along = std::clamp(edge.dot(x - a) / edge.squaredNorm(), 0.0, 1.0);
       nearest = std::min(nearest, (x - a - along * edge).squaredNorm());
     }
