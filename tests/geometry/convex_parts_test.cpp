@@ -253,7 +253,7 @@ Ball largest_ball(const TriangleMesh& vessel) {
 }
 
 // The share of the largest ball that the hulls leave room for. Vessels of 40 parts, turned any way, leave 0.86 to 0.97
-// on average and 0.78 at least (320 measured); twelve sectors cost 0.034 and the rounding of a bowl from rim to foot as
+// on average and 0.83 at least (96 measured); twelve sectors cost 0.034 and the rounding of a bowl from rim to foot as
 // much again.
 constexpr double kRoom = 0.85, kLeastRoom = 0.65;
 
