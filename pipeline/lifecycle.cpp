@@ -22,16 +22,18 @@ const char* name_of(SizeClass size) {
   return "";
 }
 
+// Collision cost grows with the product of the parts of two bodies. A whole body may be a ball, which takes many
+// vertices to roll; a vessel takes many parts to hold something.
 geometry::ConvexPartsSettings collision_detail(SizeClass size) {
   switch (size) {
     case SizeClass::tiny:
-      return {.max_parts = 2, .excess = 0.1, .max_hull_vertices = 24};
+      return {.max_parts = 4, .gap = 0.01, .max_hull_vertices = 32};
     case SizeClass::small:
-      return {.max_parts = 4, .excess = 0.1, .max_hull_vertices = 24};
+      return {.max_parts = 10, .gap = 0.01, .max_hull_vertices = 48};
     case SizeClass::large:
-      return {.max_parts = 8, .excess = 0.1, .max_hull_vertices = 24};
+      return {.max_parts = 20, .gap = 0.005, .max_hull_vertices = 64};
     case SizeClass::nearly_whole:
-      return {.max_parts = 16, .excess = 0.05, .max_hull_vertices = 32};
+      return {.max_parts = 40, .gap = 0.005, .max_hull_vertices = 256};
   }
   return {};
 }

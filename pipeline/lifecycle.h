@@ -6,9 +6,9 @@
 namespace sunder::pipeline {
 
 enum class SizeClass {
-  tiny,          ///< collides as its convex hull or little more; does not break unless `minimum_volume` says so
-  small,         ///< collides as a few hulls
-  large,         ///< collides as many hulls
+  tiny,   ///< collides as its convex hull, or a few if it is curved; does not break unless `minimum_volume` says so
+  small,  ///< collides as up to ten hulls
+  large,  ///< collides as up to twenty
   nearly_whole,  ///< keeps the particles of the body that it is nearly the whole of
 };
 

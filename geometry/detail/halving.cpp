@@ -6,14 +6,14 @@
 
 #include <Eigen/LU>
 
-#include "geometry/detail/hull.h"
-#include "geometry/detail/shells.h"
-
 namespace sunder::geometry::detail {
 namespace {
 
 // Three planes that meet at an angle flatter than this have no corner worth keeping.
 constexpr double kFlat = 1e-9;
+
+// A vertex closer to the plane than this share of the farthest one's distance lies in it.
+constexpr double kInPlane = 1e-12;
 
 struct Corner {
   int vertex;
@@ -30,19 +30,27 @@ struct Polygon {
 
 class Cutter {
  public:
-  Cutter(const CellPart& part, const Plane& plane) : vertices_(part.vertices) {
+  Cutter(const CellPart& part, const Plane& plane) : vertices_(part.vertices), normal_(plane.normal) {
     distance_.reserve(vertices_.size());
-    for (const Vec3& x : vertices_) distance_.push_back(plane.distance(x));
+    double farthest = 0;
+    for (const Vec3& x : vertices_) {
+      distance_.push_back(plane.distance(x));
+      farthest = std::max(farthest, std::abs(distance_.back()));
+    }
+    for (double& d : distance_) {
+      if (std::abs(d) < kInPlane * farthest) d = 0;
+    }
   }
 
   void cut(const std::vector<Triangle>& faces, std::vector<Triangle>& below, std::vector<Triangle>& above) {
     for (const Triangle& face : faces) {
       Polygon lower, upper;
       split(face, lower, upper);
-      const bool is_below = reaches(lower, -1);
-      if (is_below) emit(lower, below), add_rim(lower);
-      // A face in the plane belongs above.
-      if (!is_below || reaches(upper, 1)) emit(upper, above);
+      const bool is_below = reaches(lower, -1), is_above = reaches(upper, 1);
+      // A face in the plane goes where the solid is that it bounds.
+      const bool closes_below = !is_below && !is_above && looks_up(face);
+      if (is_below || closes_below) emit(lower, below), add_rim(lower);
+      if (is_above || !(is_below || closes_below)) emit(upper, above);
     }
   }
 
@@ -61,6 +69,11 @@ class Cutter {
   static bool reaches(const Polygon& polygon, int sign) {
     return std::any_of(polygon.corners.begin(), polygon.corners.begin() + polygon.count,
                        [&](const Corner& corner) { return sign * corner.distance > 0; });
+  }
+
+  bool looks_up(const Triangle& face) const {
+    const Vec3& a = vertices_[face[0]];
+    return (vertices_[face[1]] - a).cross(vertices_[face[2]] - a).dot(normal_) > 0;
   }
 
   void split(const Triangle& face, Polygon& lower, Polygon& upper) {
@@ -98,18 +111,30 @@ class Cutter {
   }
 
   std::vector<Vec3> vertices_;
+  Vec3 normal_;
   std::vector<double> distance_;
   std::vector<std::array<int, 2>> rim_;
 };
 
 void drop_unused_vertices(CellPart& part) {
-  std::vector<Triangle> all = part.surface;
-  all.insert(all.end(), part.caps.begin(), part.caps.end());
-  TriangleMesh mesh = compact(part.vertices, all);
-  part.vertices = std::move(mesh.vertices);
-  const auto middle = mesh.faces.begin() + static_cast<std::ptrdiff_t>(part.surface.size());
-  part.surface.assign(mesh.faces.begin(), middle);
-  part.caps.assign(middle, mesh.faces.end());
+  std::vector<int> index(part.vertices.size(), -1);
+  std::vector<Vec3> used;
+  used.reserve(part.vertices.size());
+  const auto renumber = [&](std::vector<Triangle>& faces) {
+    for (Triangle& face : faces) {
+      for (int& vertex : face) {
+        if (index[vertex] < 0) {
+          index[vertex] = static_cast<int>(used.size());
+          used.push_back(part.vertices[vertex]);
+        }
+        vertex = index[vertex];
+      }
+    }
+  };
+  renumber(part.surface);
+  part.on_surface = static_cast<int>(used.size());
+  renumber(part.caps);
+  part.vertices = std::move(used);
 }
 
 }  // namespace

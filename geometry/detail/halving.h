@@ -15,7 +15,8 @@ struct Plane {
 
 /// The part of a solid inside a convex cell.
 struct CellPart {
-  std::vector<Vec3> vertices;
+  std::vector<Vec3> vertices;     ///< those of the surface first
+  int on_surface = 0;             ///< how many those are
   std::vector<Triangle> surface;  ///< of the solid, clipped to the cell
   /// Close the surface along the cell's planes, for volume integrals only: fans that may overlap, leave the solid and
   /// cancel each other.
@@ -29,7 +30,7 @@ struct Halves {
   CellPart below, above;
 };
 
-/// Below: distance <= 0. The volumes add up to the part's; vertices that no face uses are dropped.
+/// Below: distance <= 0, up to rounding. The volumes add up to the part's; vertices that no face uses are dropped.
 Halves halve(const CellPart& part, const Plane& plane);
 
 /// Corners of the cell: where three of its planes meet on the inner side of all others.

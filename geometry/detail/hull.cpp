@@ -4,10 +4,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 
-#include <CGAL/convex_hull_3.h>
+#include <CGAL/enum.h>
 #include <Eigen/Eigenvalues>
 
 #include "geometry/detail/cgal_mesh.h"
@@ -16,75 +15,8 @@
 namespace sunder::geometry::detail {
 namespace {
 
-// Maps the points into a cube of about unit size; hull vertices stay hull vertices under an affine map.
-Mat3 to_even_extents(const std::vector<Vec3>& points) {
-  const Mat3 axes = principal_axes(points);
-  Box box;
-  for (const Vec3& x : points) box.extend(axes.transpose() * x);
-  Vec3 scale = box.diagonal();
-  for (double& length : scale) length = length > 0 ? 1 / length : 1;
-  return scale.asDiagonal() * axes.transpose();
-}
-
-// A hull that grows point by point (Clarkson and Shor 1989 without the conflict graph: the points are few). CGAL's own
-// orders faces by address, so its triangulation of coplanar points differs from run to run.
-class GrowingHull {
- public:
-  struct Face {
-    Triangle corners;
-    Vec3 normal;    // unit
-    double height;  // of the plane along it
-    double area;    // twice the triangle's
-  };
-
-  // The fourth point lies on the side from which the other three turn left.
-  GrowingHull(const std::vector<Vec3>& points, const std::array<int, 4>& first)
-      : points_(points), edges_(points.size() * points.size(), false) {
-    const auto [a, b, c, d] = first;
-    for (const Triangle& face : {Triangle{a, c, b}, {a, b, d}, {b, c, d}, {c, a, d}}) add_face(face);
-  }
-
-  /// sees(face, point): the point lies above the face.
-  template <class Sees>
-  void add(int point, const Sees& sees) {
-    const auto seen =
-        std::stable_partition(faces_.begin(), faces_.end(), [&](const Face& face) { return !sees(face, point); });
-    if (seen == faces_.end()) return;
-    const std::vector<Face> gone(seen, faces_.end());
-    faces_.erase(seen, faces_.end());
-    mark_edges(gone, true);
-    for (const Face& face : gone) {
-      for (int k = 0; k < 3; ++k) {
-        const int from = face.corners[k], to = face.corners[(k + 1) % 3];
-        if (!edge(to, from)) add_face({from, to, point});
-      }
-    }
-    mark_edges(gone, false);
-  }
-
-  const std::vector<Face>& faces() const { return faces_; }
-
- private:
-  void add_face(const Triangle& corners) {
-    const Vec3& a = points_[corners[0]];
-    const Vec3 cross = (points_[corners[1]] - a).cross(points_[corners[2]] - a);
-    const double length = cross.norm();
-    const Vec3 normal = length > 0 ? Vec3(cross / length) : Vec3(Vec3::Zero());
-    faces_.push_back({corners, normal, normal.dot(a), length});
-  }
-
-  void mark_edges(const std::vector<Face>& faces, bool mark) {
-    for (const Face& face : faces) {
-      for (int k = 0; k < 3; ++k) edge(face.corners[k], face.corners[(k + 1) % 3]) = mark;
-    }
-  }
-
-  std::vector<bool>::reference edge(int from, int to) { return edges_[from * points_.size() + to]; }
-
-  const std::vector<Vec3>& points_;
-  std::vector<Face> faces_;
-  std::vector<bool> edges_;
-};
+// Points within this share of the size above the hull are rounding.
+constexpr double kRounding = 1e-13;
 
 template <class Measure>
 int farthest(const std::vector<Vec3>& points, const Measure& measure) {
@@ -97,112 +29,228 @@ int farthest(const std::vector<Vec3>& points, const Measure& measure) {
   return best;
 }
 
+CGAL::Orientation side(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& x) {
+  return CGAL::orientation(to_point(a), to_point(b), to_point(c), to_point(x));
+}
+
 // Four points that span space, the first three turning left seen from the fourth, as far apart as rounding tells.
 std::optional<std::array<int, 4>> spanning_points(const std::vector<Vec3>& points) {
   if (points.size() < 4) return std::nullopt;
   const int a = farthest(points, [](const Vec3& x) { return -x.x(); });
-  const int b = farthest(points, [&](const Vec3& x) { return (x - points[a]).norm(); });
+  const int b = farthest(points, [&](const Vec3& x) { return (x - points[a]).squaredNorm(); });
   const Vec3 ab = points[b] - points[a];
-  const int c = farthest(points, [&](const Vec3& x) { return ab.cross(x - points[a]).norm(); });
-  const auto side = [&](const Vec3& x) {
-    return CGAL::orientation(to_point(points[a]), to_point(points[b]), to_point(points[c]), to_point(x));
-  };
+  const int c = farthest(points, [&](const Vec3& x) { return ab.cross(x - points[a]).squaredNorm(); });
+  const auto exact = [&](const Vec3& x) { return side(points[a], points[b], points[c], x); };
   const Vec3 normal = ab.cross(points[c] - points[a]).normalized();
   int d = farthest(points, [&](const Vec3& x) { return std::abs(normal.dot(x - points[a])); });
-  if (side(points[d]) == CGAL::COPLANAR) d = farthest(points, [&](const Vec3& x) { return std::abs(side(x)); });
-  if (side(points[d]) == CGAL::COPLANAR) return std::nullopt;
-  return side(points[d]) == CGAL::POSITIVE ? std::array{a, b, c, d} : std::array{a, c, b, d};
+  if (exact(points[d]) == CGAL::COPLANAR) d = farthest(points, [&](const Vec3& x) { return std::abs(exact(x)); });
+  if (exact(points[d]) == CGAL::COPLANAR) return std::nullopt;
+  return exact(points[d]) == CGAL::POSITIVE ? std::array{a, b, c, d} : std::array{a, c, b, d};
 }
 
-// The points farthest along each direction, each once, in order of index.
-std::vector<Vec3> extreme_points(const std::vector<Vec3>& points, const Eigen::MatrixX3d& directions) {
-  constexpr Eigen::Index kBlock = 256;  // keeps the products in the cache
-  const auto count = static_cast<Eigen::Index>(points.size());
-  const Eigen::Map<const Eigen::Matrix3Xd> all(points[0].data(), 3, count);
-  Eigen::VectorXd best = Eigen::VectorXd::Constant(directions.rows(), -std::numeric_limits<double>::infinity());
-  std::vector<Eigen::Index> winner(directions.rows(), 0);
-  for (Eigen::Index start = 0; start < count; start += kBlock) {
-    const Eigen::MatrixXd heights =
-        all.middleCols(start, std::min(kBlock, count - start)).transpose() * directions.transpose();
-    for (Eigen::Index i = 0; i < directions.rows(); ++i) {
-      const double highest = heights.col(i).maxCoeff();
-      if (highest <= best[i]) continue;
-      Eigen::Index where;
-      best[i] = heights.col(i).maxCoeff(&where);
-      winner[i] = start + where;
+// Quickhull (Barber, Dobkin and Huhdanpaa 1996) that always adds the point farthest from the hull so far, so that it
+// can stop at a distance. Distances are rounded; what a point sees is decided exactly.
+class GreedyHull {
+ public:
+  GreedyHull(const std::vector<Vec3>& points, const std::array<int, 4>& first, double tolerance)
+      : points_(points), tolerance_(tolerance), next_(points.size(), kNone), face_from_(points.size(), kNone) {
+    const auto [a, b, c, d] = first;
+    for (const Triangle& corners : {Triangle{a, c, b}, {a, b, d}, {b, c, d}, {c, a, d}}) add_face(corners);
+    faces_[0].across = {3, 2, 1};
+    faces_[1].across = {0, 2, 3};
+    faces_[2].across = {0, 3, 1};
+    faces_[3].across = {0, 1, 2};
+    for (int i = 0; i < static_cast<int>(points.size()); ++i) {
+      if (i != a && i != b && i != c && i != d) assign(i, 0);
     }
   }
-  std::sort(winner.begin(), winner.end());
-  winner.erase(std::unique(winner.begin(), winner.end()), winner.end());
-  std::vector<Vec3> result;
-  for (const Eigen::Index i : winner) result.push_back(points[i]);
-  return result;
-}
+
+  void grow(int max_vertices) {
+    for (int count = 4; count < max_vertices;) {
+      const int face = farthest_face();
+      if (face == kNone) return;
+      const int point = take_farthest(face);
+      const int seen = is_seen(face, point) ? face : any_seen(point);
+      if (seen == kNone) continue;
+      add(point, seen);
+      ++count;
+    }
+    if (const int face = farthest_face(); face != kNone) left_out_ = std::max(left_out_, reach_[face]);
+  }
+
+  SmallHull result() const {
+    std::vector<Triangle> faces;
+    for (const Face& face : faces_) {
+      if (face.alive) faces.push_back(face.corners);
+    }
+    return {compact(points_, faces), left_out_};
+  }
+
+ private:
+  static constexpr int kNone = -1;
+
+  struct Face {
+    Vec3 normal, corner;  // the normal is of length 1, or zero
+    Triangle corners{};
+    std::array<int, 3> across{};  // the faces beyond the edges from corner k to the next
+    int points = kNone;           // the first of those above it
+    int farthest = kNone;
+    bool alive = true, has_outward = false;
+    std::array<Vec3, 3> outward;  // in the plane, square to the edges; made when first needed
+  };
+
+  void add_face(const Triangle& corners) {
+    Face& face = faces_.emplace_back();
+    const Vec3 &a = points_[corners[0]], &b = points_[corners[1]], &c = points_[corners[2]];
+    face.normal = (b - a).cross(c - a).normalized();
+    face.corner = a;
+    face.corners = corners;
+    reach_.push_back(0);
+  }
+
+  void find_outward(Face& face) const {
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 edge = points_[face.corners[(k + 1) % 3]] - points_[face.corners[k]];
+      face.outward[k] = edge.cross(face.normal);
+    }
+    face.has_outward = true;
+  }
+
+  // Beyond a sharp edge a point is far away although it is hardly above any face.
+  double distance(Face& face, const Vec3& x) const {
+    if (!face.has_outward) find_outward(face);
+    bool over_face = true;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < 3; ++k) {
+      const Vec3& a = points_[face.corners[k]];
+      if (face.outward[k].dot(x - a) <= 0) continue;
+      over_face = false;
+      const Vec3 edge = points_[face.corners[(k + 1) % 3]] - a;
+      const double along = std::clamp(edge.dot(x - a) / edge.squaredNorm(), 0.0, 1.0);
+      nearest = std::min(nearest, (x - a - along * edge).squaredNorm());
+    }
+    return over_face ? face.normal.dot(x - face.corner) : std::sqrt(nearest);
+  }
+
+  // To the face that the point is highest above, of those from `first` on.
+  void assign(int point, int first) {
+    const Vec3& x = points_[point];
+    int best = kNone;
+    double highest = 0;
+    for (int i = first; i < static_cast<int>(faces_.size()); ++i) {
+      const double height = faces_[i].normal.dot(x - faces_[i].corner);
+      if (height > highest) highest = height, best = i;
+    }
+    if (best == kNone) return;
+    Face& face = faces_[best];
+    const double far = distance(face, x);
+    if (far <= tolerance_) {
+      left_out_ = std::max(left_out_, far);
+      return;
+    }
+    next_[point] = face.points;
+    face.points = point;
+    if (far > reach_[best]) reach_[best] = far, face.farthest = point;
+  }
+
+  int farthest_face() const {
+    const auto most = std::max_element(reach_.begin(), reach_.end());
+    return *most > 0 ? static_cast<int>(most - reach_.begin()) : kNone;
+  }
+
+  int take_farthest(int from) {
+    Face& face = faces_[from];
+    const int taken = face.farthest;
+    reach_[from] = 0;
+    for (int* link = &face.points; *link != kNone;) {
+      if (*link == taken) {
+        *link = next_[taken];
+        continue;
+      }
+      const double far = distance(face, points_[*link]);
+      if (far > reach_[from]) reach_[from] = far, face.farthest = *link;
+      link = &next_[*link];
+    }
+    return taken;
+  }
+
+  bool is_seen(int face, int point) const {
+    const auto [a, b, c] = faces_[face].corners;
+    return side(points_[a], points_[b], points_[c], points_[point]) == CGAL::POSITIVE;
+  }
+
+  int any_seen(int point) const {
+    for (int i = 0; i < static_cast<int>(faces_.size()); ++i) {
+      if (faces_[i].alive && is_seen(i, point)) return i;
+    }
+    return kNone;
+  }
+
+  void add(int point, int seen) {
+    const int first_new = static_cast<int>(faces_.size());
+    take_away_seen(point, seen);
+    for (const int face : gone_) {
+      for (int k = 0; k < 3; ++k) {
+        if (faces_[faces_[face].across[k]].alive) add_over_edge(face, k, point);
+      }
+    }
+    for (int face = first_new; face < static_cast<int>(faces_.size()); ++face) {
+      const int following = face_from_[faces_[face].corners[1]];
+      faces_[face].across[1] = following;
+      faces_[following].across[2] = face;
+    }
+    for (const int face : gone_) {
+      for (int x = faces_[face].points; x != kNone;) {
+        const int following = next_[x];
+        assign(x, first_new);
+        x = following;
+      }
+    }
+  }
+
+  void take_away_seen(int point, int seen) {
+    gone_ = {seen};
+    faces_[seen].alive = false;
+    for (std::size_t i = 0; i < gone_.size(); ++i) {
+      for (const int beyond : faces_[gone_[i]].across) {
+        if (!faces_[beyond].alive || !is_seen(beyond, point)) continue;
+        faces_[beyond].alive = false;
+        gone_.push_back(beyond);
+      }
+    }
+    for (const int face : gone_) reach_[face] = 0;
+  }
+
+  void add_over_edge(int face, int k, int point) {
+    const int beyond = faces_[face].across[k], from = faces_[face].corners[k], to = faces_[face].corners[(k + 1) % 3];
+    const int made = static_cast<int>(faces_.size());
+    add_face({from, to, point});
+    faces_[made].across[0] = beyond;
+    face_from_[from] = made;
+    for (int j = 0; j < 3; ++j) {
+      if (faces_[beyond].corners[j] == to) faces_[beyond].across[j] = made;
+    }
+  }
+
+  const std::vector<Vec3>& points_;
+  double tolerance_;
+  std::vector<Face> faces_;
+  std::vector<double> reach_;   // per face: distance of the farthest point above it
+  std::vector<int> gone_;       // the faces that the last point took away
+  std::vector<int> next_;       // per point: the next above the same face
+  std::vector<int> face_from_;  // per point: the face that was made last over an edge from it
+  double left_out_ = 0;
+};
 
 }  // namespace
 
-Eigen::Matrix3Xd even_directions(int count) {
-  const double golden_angle = 2 * std::numbers::pi * (2 - std::numbers::phi);
-  Eigen::Matrix3Xd result(3, count);
-  for (int i = 0; i < count; ++i) {
-    const double z = 1 - (2 * i + 1.0) / count, radius = std::sqrt(1 - z * z);
-    result.col(i) << radius * std::cos(golden_angle * i), radius * std::sin(golden_angle * i), z;
-  }
-  return result;
-}
-
-TriangleMesh convex_hull(const std::vector<Vec3>& points) {
+SmallHull small_convex_hull(const std::vector<Vec3>& points, double tolerance, int max_vertices) {
   const auto first = spanning_points(points);
   if (!first) return {};
-  std::vector<Kernel::Point_3> exact;
-  exact.reserve(points.size());
-  for (const Vec3& x : points) exact.push_back(to_point(x));
-  GrowingHull hull(points, *first);
-  for (int i = 0; i < static_cast<int>(points.size()); ++i) {
-    hull.add(i, [&](const GrowingHull::Face& face, int point) {
-      const auto [a, b, c] = face.corners;
-      return CGAL::orientation(exact[a], exact[b], exact[c], exact[point]) == CGAL::POSITIVE;
-    });
-  }
-  std::vector<Triangle> faces;
-  for (const GrowingHull::Face& face : hull.faces()) faces.push_back(face.corners);
-  return compact(points, faces);
-}
-
-double rough_hull_volume(const std::vector<Vec3>& points) {
-  constexpr double kFlat = 1e-9;  // of the size
-  const auto first = spanning_points(points);
-  if (!first) return 0;
-  const Vec3& origin = points[(*first)[0]];
-  const double tolerance = kFlat * (points[(*first)[1]] - origin).norm();
-  GrowingHull hull(points, *first);
-  for (int i = 0; i < static_cast<int>(points.size()); ++i) {
-    hull.add(i, [&](const GrowingHull::Face& face, int point) {
-      return face.normal.dot(points[point]) - face.height > tolerance;
-    });
-  }
-  double six_volumes = 0;
-  for (const GrowingHull::Face& face : hull.faces()) {
-    six_volumes += face.area * (face.height - face.normal.dot(origin));
-  }
-  return six_volumes / 6;
-}
-
-SmallHull small_convex_hull(const std::vector<Vec3>& points, int max_vertices) {
-  if (points.empty()) return {};
-  const Mat3 map = to_even_extents(points);
-  const auto fits = [&](const TriangleMesh& hull) { return static_cast<int>(hull.vertices.size()) <= max_vertices; };
-  const int finest = 3 * max_vertices;
-  std::vector<Vec3> candidates = points;
-  if (static_cast<int>(points.size()) > finest) {
-    candidates = extreme_points(points, even_directions(finest).transpose() * map);
-  }
-  SmallHull hull{convex_hull(candidates), 0};
-  hull.full_volume = volume(hull.mesh);
-  for (int count = finest; !fits(hull.mesh); count -= std::max(1, max_vertices / 4)) {
-    hull.mesh = convex_hull(extreme_points(candidates, even_directions(std::max(4, count)).transpose() * map));
-  }
-  return hull;
+  const double size = (points[(*first)[1]] - points[(*first)[0]]).norm();
+  GreedyHull hull(points, *first, std::max(tolerance, kRounding * size));
+  hull.grow(max_vertices);
+  return hull.result();
 }
 
 Mat3 principal_axes(const std::vector<Vec3>& points) {

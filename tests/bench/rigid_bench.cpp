@@ -60,7 +60,7 @@ std::vector<rigid::BodySetup> poured() {
     const geometry::MassProperties whole = geometry::mass_properties(mesh);
     rigid::BodySetup setup;
     setup.hulls = geometry::convex_parts(geometry::transformed(mesh, Mat3::Identity(), -whole.centroid),
-                                         {.max_parts = 2, .excess = 0.1, .max_hull_vertices = 24})
+                                         {.max_parts = 4, .gap = 0.01, .max_hull_vertices = 32})
                       .hulls;
     setup.mass = density * whole.volume;
     setup.inertia = density * whole.inertia;
