@@ -63,16 +63,6 @@ void read_spline(const Value& value, FractureSettings& settings) {
   settings.spline = value.word<mpm::Spline>(kSplines);
 }
 
-void read_small_volume(const Value& value, FractureSettings& settings) {
-  settings.small_volume = value.within(0, 1);
-  if (settings.small_volume < settings.tiny_volume) value.fail("has to be at least tiny_volume");
-}
-
-void read_nearly_whole_volume(const Value& value, FractureSettings& settings) {
-  settings.nearly_whole_volume = value.within(0, 1);
-  if (settings.nearly_whole_volume < settings.small_volume) value.fail("has to be at least small_volume");
-}
-
 void read_cut(const Value& value, FractureSettings& settings) {
   constexpr std::array<std::pair<std::string_view, bool>, 2> kWays = {{{"exact", false}, {"level_set", true}}};
   settings.level_set_cut = value.word<bool>(kWays);
@@ -94,8 +84,10 @@ constexpr std::array<Key<FractureSettings>, 14> kFractureKeys = {{
        settings.maximum_fragments = static_cast<int>(value.integer(0, kMaximumCount));
      }},
     {"tiny_volume", [](const Value& value, FractureSettings& settings) { settings.tiny_volume = value.within(0, 1); }},
-    {"small_volume", read_small_volume},
-    {"nearly_whole_volume", read_nearly_whole_volume},
+    {"small_volume",
+     [](const Value& value, FractureSettings& settings) { settings.small_volume = value.within(0, 1); }},
+    {"nearly_whole_volume",
+     [](const Value& value, FractureSettings& settings) { settings.nearly_whole_volume = value.within(0, 1); }},
     {"damage", read_damage},
     {"load", read_load},
     {"spline", read_spline},
@@ -213,6 +205,18 @@ std::vector<SceneBody> read_bodies(const std::filesystem::path& file, const toml
   return bodies;
 }
 
+void check_volumes(const std::filesystem::path& file, const toml::table& document, const FractureSettings& settings) {
+  const toml::table* table = find_table(file, document, "fracture");
+  if (!table) return;
+  const Section section{file, *table, "[fracture]"};
+  if (settings.small_volume < settings.tiny_volume) {
+    if (section.has("small_volume")) section.fail_at("small_volume", "small_volume: has to be at least tiny_volume");
+    section.fail_at("tiny_volume", "tiny_volume: has to be at most small_volume");
+  }
+  if (settings.nearly_whole_volume < settings.small_volume)
+    section.fail_at("nearly_whole_volume", "nearly_whole_volume: has to be at least small_volume");
+}
+
 void check_frame_count(const std::filesystem::path& file, const toml::table& document, const Scene& scene) {
   constexpr double kMaximumFrames = 1e6;  // more is a slip of the pen, and would fill any disk
   if (scene.duration * scene.frame_rate <= kMaximumFrames) return;
@@ -261,6 +265,7 @@ Scene load_scene(const std::filesystem::path& file, const AssetPaths& assets) {
   scene.ground = read_ground(file, document, names.materials);
   scene.bodies = read_bodies(file, document, names);
   read_optional<FractureSettings>(file, document, "fracture", kFractureKeys, scene.fracture);
+  check_volumes(file, document, scene.fracture);
   scene.effects = read_effects(file, document);
   read_optional<Outputs>(file, document, "output", kOutputKeys, scene.outputs);
   return scene;

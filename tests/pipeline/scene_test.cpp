@@ -78,6 +78,52 @@ TEST_F(SceneTest, FillsInDefaults) {
   EXPECT_TRUE(body.breakable);
 }
 
+TEST_F(SceneTest, ReadsPathsOfDrivenBodies) {
+  const Scene scene = load(kBall +
+                           "motion = 'kinematic'\nminimum_impulse = 0.5\n"
+                           "path = [{ time = 0, position = [0, 1, 0], rotation = [0, 90, 0] }, { time = 2, position = "
+                           "[0, 0, 0] }]\n");
+  const SceneBody& ball = scene.bodies[0];
+  ASSERT_EQ(ball.path.size(), 2u);
+  EXPECT_EQ(ball.position, Vec3(0, 1, 0));
+  EXPECT_EQ(ball.minimum_impulse, 0.5);
+  EXPECT_EQ(ball.path[1].time, 2);
+  EXPECT_EQ(ball.path[1].pose.orientation.coeffs(), ball.path[0].pose.orientation.coeffs()) << "kept when not given";
+}
+
+TEST_F(SceneTest, RefusesPathsThatCannotBeFollowed) {
+  const std::string driven = kBall + "motion = 'kinematic'\n", keyframe = "{ time = 0, position = [0, 1, 0] }";
+  const std::string later = "{ time = 1, position = [0, 0, 0] }";
+  EXPECT_EQ(
+      complaint(driven + "path = [" + later + ", { time = 2, position = [0, 0, 0] }]"),
+      "scene.toml:7: body 'ball': path: 1: the path has a gap before its first keyframe; where the body starts has "
+      "time = 0");
+  EXPECT_EQ(complaint(driven + "path = [" + keyframe + ", " + keyframe + "]"),
+            "scene.toml:7: body 'ball': path: 2: its time has to be later than that of the keyframe before");
+  EXPECT_EQ(complaint(driven + "path = [" + keyframe + "]"),
+            "scene.toml:7: body 'ball': path: a path has at least two keyframes");
+  EXPECT_EQ(complaint(driven + "path = [" + keyframe + ", { position = [0, 0, 0] }]"),
+            "scene.toml:7: body 'ball': path: 2: missing key 'time'");
+  EXPECT_EQ(complaint(driven + "velocity = [1, 0, 0]\npath = [" + keyframe + ", " + later + "]"),
+            "scene.toml:7: body 'ball': give 'velocity' or 'path', not both");
+  EXPECT_EQ(complaint(kBall + "path = [" + keyframe + ", " + later + "]"),
+            "scene.toml:6: body 'ball': path: only a body with motion = \"kinematic\" follows a path");
+  EXPECT_NE(complaint(driven + "path = 3").find("expected an array of tables"), std::string::npos);
+}
+
+TEST_F(SceneTest, RefusesThresholdsThatMakeNoSense) {
+  EXPECT_EQ(complaint(kBall + "[fracture]\nminimum_impulse = -1\n"),
+            "scene.toml:7: [fracture]: minimum_impulse: expected a number that is not negative, found -1");
+  EXPECT_EQ(complaint(kBall + "minimum_impulse = -1\n"),
+            "scene.toml:6: body 'ball': minimum_impulse: expected a number that is not negative, found -1");
+  EXPECT_EQ(complaint(kBall + "[fracture]\ntiny_volume = 0.3\nsmall_volume = 0.2\n"),
+            "scene.toml:8: [fracture]: small_volume: has to be at least tiny_volume");
+  EXPECT_EQ(complaint(kBall + "[fracture]\ntiny_volume = 0.3\n"),
+            "scene.toml:7: [fracture]: tiny_volume: has to be at most small_volume");
+  EXPECT_EQ(complaint(kBall + "[fracture]\nmaximum_fragments = -1\n"),
+            "scene.toml:7: [fracture]: maximum_fragments: expected an integer from 0 to 2147483647, found -1");
+}
+
 TEST_F(SceneTest, ReadsEverySection) {
   const Scene scene = load(R"(
 [scene]
