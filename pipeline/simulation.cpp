@@ -19,6 +19,9 @@ namespace {
 /// fault.
 constexpr double tolerated_overlap = 0.05;
 
+/// Hits of less than this share of the severity of the hardest on a body are left out of its solve.
+constexpr double slight_share = 0.05;
+
 rigid::WorldSettings world_settings(const Scene& scene, int steps_per_frame) {
   rigid::WorldSettings w;
   w.gravity = scene.gravity;
@@ -216,11 +219,18 @@ std::vector<Simulation::Hit> Simulation::breaking_hits(const std::vector<rigid::
     std::swap(mirrored.arm_a, mirrored.arm_b);
     add(mirrored);
   }
+  std::map<std::pair<rigid::BodyId, rigid::BodyId>, double> severity;
   for (const auto& [pair, sum] : impulse) {
     Hit& hit = hits.at(pair.first);
     hit.impulse += sum;
-    hit.severity = std::max(hit.severity, sum / minimum_impulse(state_.live.at(pair.first), free_mass(pair.second)));
+    severity[pair] = sum / minimum_impulse(state_.live.at(pair.first), free_mass(pair.second));
+    hit.severity = std::max(hit.severity, severity[pair]);
   }
+  // A crumb that touches a body just as it breaks is no load, and its lightness would cost a thousand times the steps.
+  for (auto& [body, hit] : hits)
+    std::erase_if(hit.impacts, [&](const rigid::Impact& impact) {
+      return severity[{impact.body_a, impact.body_b}] < slight_share * hit.severity;
+    });
   std::vector<Hit> chosen;
   for (auto& [body, hit] : hits)
     if (hit.severity >= 1) chosen.push_back(std::move(hit));

@@ -18,6 +18,16 @@ constexpr int most_sub_steps = 512;
 constexpr double turn_per_step = 1;  // [rad]
 constexpr double most_turns = 8;
 
+// Bodies lighter than this share of the heaviest are crumbs: they take the sub-steps that others need.
+constexpr double crumb_share = 1e-6;
+
+double heaviest(const std::vector<Body*>& bodies) {
+  double mass = 0;
+  for (const Body* body : bodies)
+    if (body->is_dynamic()) mass = std::max(mass, body->mass);
+  return mass;
+}
+
 struct StepMotion {
   Vec3 shift = Vec3::Zero();  // of the centre of mass in one step [m]
   double sweep = 0;           // of the outermost point by rotation [m]
@@ -36,6 +46,20 @@ Box swept(const Body& body, const StepMotion& motion) {
   box.extend(moved);
   const Vec3 margin = Vec3::Constant(motion.sweep);
   return Box(box.min() - margin, box.max() + margin);
+}
+
+// Beside a large body a small one may take strides of this share of the large one's.
+constexpr double stride_beside = 0.05;
+
+/// How far two bodies move against each other in a step in which their bounding spheres meet [m]. Bodies that part, as
+/// fragments do after a burst, count with their spins alone.
+double motion_towards(const Body& a, const StepMotion& motion_a, const Body& b, const StepMotion& motion_b) {
+  const Vec3 apart = to_eigen(a.object->getCenterOfMassPosition() - b.object->getCenterOfMassPosition());
+  const Vec3 shift = motion_a.shift - motion_b.shift;
+  const double reach = a.radius + b.radius, along = apart.dot(shift), length = shift.squaredNorm();
+  const double nearest = length > 0 ? std::clamp(-along / length, 0.0, 1.0) : 0;
+  if ((apart + nearest * shift).norm() > reach) return 0;
+  return motion_a.sweep + motion_b.sweep + (along < 0 ? shift.norm() : 0);
 }
 
 double steps_for(double motion, double stride) { return std::ceil(motion / stride); }
@@ -57,10 +81,13 @@ std::vector<std::pair<int, int>> touching(const std::vector<Box>& boxes) {
 }
 
 int sub_steps(const std::vector<Body*>& bodies, const Body* ground, const Vec3& gravity, double time_step) {
+  const double crumb = crumb_share * heaviest(bodies);
+  const auto counts = [&](const Body& body) { return !body.is_dynamic() || body.mass >= crumb; };
   std::vector<StepMotion> motions;
   double farthest = 0, least_stride = std::numeric_limits<double>::infinity(), fastest_turn = 0;
   for (const Body* body : bodies) {
     motions.push_back(motion_of(*body, gravity, time_step));
+    if (!counts(*body)) continue;
     farthest = std::max(farthest, motions.back().shift.norm() + motions.back().sweep);
     least_stride = std::min(least_stride, body->stride);
     fastest_turn = std::max(fastest_turn, motions.back().sweep / body->radius);
@@ -71,11 +98,13 @@ int sub_steps(const std::vector<Body*>& bodies, const Body* ground, const Vec3& 
   double steps = 1;
   for (const auto& [i, j] : touching(boxes)) {
     if (!bodies[i]->is_dynamic() && !bodies[j]->is_dynamic()) continue;
-    const double motion = (motions[i].shift - motions[j].shift).norm() + motions[i].sweep + motions[j].sweep;
-    steps = std::max(steps, steps_for(motion, std::min(bodies[i]->stride, bodies[j]->stride)));
+    if (!counts(*bodies[i]) || !counts(*bodies[j])) continue;
+    const auto [least, most] = std::minmax(bodies[i]->stride, bodies[j]->stride);
+    const double motion = motion_towards(*bodies[i], motions[i], *bodies[j], motions[j]);
+    steps = std::max(steps, steps_for(motion, std::max(least, stride_beside * most)));
   }
   for (std::size_t i = 0; ground && i < bodies.size(); ++i) {
-    if (boxes[i].min().y() > ground->ground_height || !bodies[i]->is_dynamic()) continue;
+    if (boxes[i].min().y() > ground->ground_height || !bodies[i]->is_dynamic() || !counts(*bodies[i])) continue;
     steps = std::max(steps, std::min(most_turns, steps_for(motions[i].sweep / bodies[i]->radius, turn_per_step)));
   }
   return static_cast<int>(std::min<double>(steps, most_sub_steps));

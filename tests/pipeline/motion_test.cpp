@@ -176,7 +176,7 @@ glb = false
 // Four panes land at once: their solves run side by side.
 TEST_F(Motion, SolvesSideBySideDoNotDependOnThreads) {
   std::string text =
-      "[scene]\nduration = 0.05\nframe_rate = 60\nquality = \"draft\"\n[ground]\n[output]\nobj = false\n";
+      "[scene]\nduration = 0.017\nframe_rate = 60\nquality = \"draft\"\n[ground]\n[output]\nobj = false\n";
   for (int i = 0; i < 4; ++i)
     text +=
         "[[body]]\nname = \"pane" + std::to_string(i) +
