@@ -24,15 +24,12 @@ struct World::Impl {
   };
 
   explicit Impl(const WorldSettings& chosen)
-      : settings(chosen),
-        ground(chosen.has_ground ? detail::make_ground(chosen) : nullptr),
-        history{{}, chosen.time_step},
-        dynamics(chosen.gravity) {}
+      : settings(chosen), ground(chosen.has_ground ? detail::make_ground(chosen) : nullptr), dynamics(chosen.gravity) {}
 
   WorldSettings settings;
   std::unique_ptr<Body> ground;
   std::map<BodyId, Member> members;
-  detail::History history;
+  std::vector<ContactMemory> contacts;  ///< in order of their pairs
   detail::Dynamics dynamics;
   BodyId next_id = 0;
   double time = 0;
@@ -40,8 +37,10 @@ struct World::Impl {
   Body& at(BodyId id) const;
   std::vector<Body*> list() const;
   void add(BodyId id, const BodySetup& setup) {
-    members.emplace(id, Member{setup, detail::make_body(id, setup, settings.gravity)});
+    Body& body = *members.emplace(id, Member{setup, detail::make_body(id, setup, settings.gravity)}).first->second.body;
+    body.last_step = settings.time_step;
   }
+  std::vector<ContactMemory> take_contacts(const detail::Group& group);
 };
 
 Body& World::Impl::at(BodyId id) const {
@@ -54,6 +53,23 @@ std::vector<Body*> World::Impl::list() const {
   std::vector<Body*> result;
   for (const auto& [id, member] : members) result.push_back(member.body.get());
   return result;
+}
+
+/// Those of bodies of the group that can move. What stands still may be in several groups, but its contacts are with
+/// bodies that are not.
+std::vector<ContactMemory> World::Impl::take_contacts(const detail::Group& group) {
+  const auto is_member = [&](BodyId id) {
+    const auto found = std::lower_bound(group.bodies.begin(), group.bodies.end(), id,
+                                        [](const Body* body, BodyId wanted) { return body->id < wanted; });
+    return found != group.bodies.end() && (*found)->id == id && ((*found)->is_dynamic() || (*found)->is_awake());
+  };
+  std::vector<ContactMemory> taken;
+  std::erase_if(contacts, [&](ContactMemory& contact) {
+    const bool belongs = is_member(contact.pair.body_a) || is_member(contact.pair.body_b);
+    if (belongs) taken.push_back(std::move(contact));
+    return belongs;
+  });
+  return taken;
 }
 
 namespace {
@@ -115,17 +131,16 @@ BodyId World::add(const BodySetup& setup) {
 
 void World::remove(BodyId id) {
   impl_->at(id);
-  detail::wake(detail::call_neighbours(id, impl_->history.contacts), impl_->history.contacts, impl_->list());
+  detail::wake(detail::call_neighbours(id, impl_->contacts), impl_->contacts, impl_->list());
   impl_->members.erase(id);
-  std::erase_if(impl_->history.contacts,
-                [&](const ContactMemory& m) { return m.pair.body_a == id || m.pair.body_b == id; });
+  std::erase_if(impl_->contacts, [&](const ContactMemory& m) { return m.pair.body_a == id || m.pair.body_b == id; });
 }
 
 BodyState World::state(BodyId id) const { return detail::state_of(impl_->at(id)); }
 
 void World::set_state(BodyId id, const BodyState& state) {
   Body& body = impl_->at(id);
-  detail::wake(detail::call_neighbours(id, impl_->history.contacts), impl_->history.contacts, impl_->list());
+  detail::wake(detail::call_neighbours(id, impl_->contacts), impl_->contacts, impl_->list());
   if (body.is_dynamic() && body.asleep) detail::set_asleep(body, false);
   detail::place(body, state);
 }
@@ -141,7 +156,7 @@ void World::drive(BodyId id, const Pose& pose) {
   const bool starts = body.asleep;
   detail::place(body, state);
   if (starts && !body.asleep)
-    detail::wake(detail::call_neighbours(id, impl_->history.contacts), impl_->history.contacts, impl_->list());
+    detail::wake(detail::call_neighbours(id, impl_->contacts), impl_->contacts, impl_->list());
 }
 
 double World::mass(BodyId id) const { return impl_->at(id).mass; }
@@ -159,10 +174,15 @@ double World::time() const { return impl_->time; }
 std::vector<Impact> World::step() {
   const WorldSettings& settings = impl_->settings;
   const std::vector<Body*> bodies = impl_->list();
-  const int pieces = detail::sub_steps(bodies, impl_->ground.get(), settings.gravity, settings.time_step);
   detail::ContactLog log;
-  for (log.sub_step = 0; log.sub_step < pieces; ++log.sub_step)
-    impl_->dynamics.advance(bodies, impl_->ground.get(), settings.time_step / pieces, impl_->history, log);
+  for (const detail::Group& group : detail::groups(bodies, impl_->ground.get(), settings.gravity, settings.time_step)) {
+    std::vector<ContactMemory> contacts = impl_->take_contacts(group);
+    for (log.sub_step = 0; log.sub_step < group.sub_steps; ++log.sub_step)
+      impl_->dynamics.advance(group.bodies, impl_->ground.get(), settings.time_step / group.sub_steps, contacts, log);
+    std::move(contacts.begin(), contacts.end(), std::back_inserter(impl_->contacts));
+  }
+  std::sort(impl_->contacts.begin(), impl_->contacts.end(),
+            [](const ContactMemory& m, const ContactMemory& n) { return m.pair < n.pair; });
   impl_->time += settings.time_step;
   for (const Body* body : bodies) check_finite(*body, impl_->time);
   return detail::impacts(std::move(log.samples), settings.resting_speed);
@@ -171,21 +191,20 @@ std::vector<Impact> World::step() {
 World::Snapshot World::snapshot() const {
   Snapshot snapshot;
   snapshot.time = impl_->time;
-  snapshot.last_step = impl_->history.last_step;
   for (const Body* body : impl_->list()) {
     snapshot.ids.push_back(body->id);
     snapshot.states.push_back(detail::state_of(*body));
     snapshot.turns.push_back(body->turn);
-    snapshot.rests.push_back({body->asleep, body->quiet_time, body->newborn});
+    snapshot.rests.push_back({body->asleep, body->quiet_time, body->last_step, body->newborn});
   }
-  snapshot.contacts = impl_->history.contacts;
+  snapshot.contacts = impl_->contacts;
   return snapshot;
 }
 
 void World::restore(const Snapshot& snapshot) {
   impl_->time = snapshot.time;
-  impl_->history = {snapshot.contacts, snapshot.last_step};
-  std::erase_if(impl_->history.contacts, [&](const ContactMemory& m) {
+  impl_->contacts = snapshot.contacts;
+  std::erase_if(impl_->contacts, [&](const ContactMemory& m) {
     return !impl_->members.contains(m.pair.body_a) ||
            (m.pair.body_b != ground_id && !impl_->members.contains(m.pair.body_b));
   });
@@ -197,6 +216,7 @@ void World::restore(const Snapshot& snapshot) {
     detail::place(body, snapshot.states[i]);
     detail::set_place(body, snapshot.states[i].pose.position, snapshot.turns[i]);
     body.quiet_time = snapshot.rests[i].quiet_time;
+    body.last_step = snapshot.rests[i].last_step;
     body.newborn = snapshot.rests[i].newborn;
   }
 }
@@ -214,7 +234,7 @@ std::vector<World::Overlap> World::overlaps() const {
   std::vector<Overlap> result;
   const auto note = [&](const Body& a, const Body& b) {
     if (!a.is_dynamic() && !b.is_dynamic()) return;
-    const double depth = excess(a, b, impl_->history.contacts);
+    const double depth = excess(a, b, impl_->contacts);
     if (depth > overlap_noise * std::min(a.radius, b.radius)) result.push_back({a.id, b.id, depth});
   };
   for (const auto& [i, j] : detail::touching(boxes)) note(*bodies[i], *bodies[j]);

@@ -108,10 +108,10 @@ class World {
     struct Rest {
       bool asleep = false;
       double quiet_time = 0;  ///< for how long it has been slow [s]
+      double last_step = 0;   ///< length of its last sub-step [s]
       bool newborn = false;   ///< has not taken its first step
     };
     double time = 0;
-    double last_step = 0;  ///< length of the last sub-step [s]
     std::vector<BodyId> ids;
     std::vector<BodyState> states;
     std::vector<Quat> turns;  ///< of the principal axes, which round differently from those of `states`

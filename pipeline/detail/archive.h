@@ -108,12 +108,12 @@ void serialize(Archive& archive, ContactMemory& contact) {
 
 template <class Archive>
 void serialize(Archive& archive, World::Snapshot::Rest& rest) {
-  archive(rest.asleep, rest.quiet_time, rest.newborn);
+  archive(rest.asleep, rest.quiet_time, rest.last_step, rest.newborn);
 }
 
 template <class Archive>
 void serialize(Archive& archive, World::Snapshot& s) {
-  archive(s.time, s.last_step, s.ids, s.states, s.turns, s.rests, s.contacts);
+  archive(s.time, s.ids, s.states, s.turns, s.rests, s.contacts);
 }
 
 template <class Archive>

@@ -29,6 +29,7 @@ struct Body {
   double reach = 0;       ///< how far it can come in a sub-step: contacts are looked for that far [m]
   double stride = 0;      ///< largest motion that a contact search may skip [m]
   bool asleep = false;    ///< at rest until something wakes it; the solver then takes it for fixed
+  double last_step = 0;   ///< length of its last sub-step [s]
   double quiet_time = 0;  ///< for how long it has been slow [s]
   double slow_speed = 0;  ///< below it, and below slow_speed / radius of spin, it is slow [m/s]
   std::unique_ptr<btCollisionShape> shape;

@@ -120,24 +120,19 @@ Vec3 arm_of(const Body& body, const Vec3& point) {
   return body.is_ground() ? Vec3(Vec3::Zero()) : Vec3(point - to_eigen(body.object->getCenterOfMassPosition()));
 }
 
-// A hit in free flight, seen from the partner: `gap` away, closing at `approach`, pulled together by `pull` [m/s^2].
+// A hit in free flight, seen from the partner: `gap` away, closing at `now`, pulled together by `pull` [m/s^2].
 struct Fall {
-  double approach, pull, gap, step_before, step;
+  double now, pull, gap, step;
 };
 
 // Speed with which the point leaves after Newton's law, v' = e v, at the moment it arrives. A velocity of symplectic
 // Euler is that of half a step before, on the way in and on the way out; without forces this is restitution * approach.
 // What falls back within a step stays.
 double leaving_speed(const Fall& fall, double restitution, double hit_time) {
-  const double now = fall.approach + fall.pull * fall.step_before / 2;
-  const double leaving = restitution * std::sqrt(std::max(0.0, now * now + 2 * fall.pull * fall.gap));
+  const double leaving = restitution * std::sqrt(std::max(0.0, fall.now * fall.now + 2 * fall.pull * fall.gap));
   if (leaving <= fall.pull * fall.step) return 0;
   return std::max(0.0, leaving + fall.pull * (hit_time - fall.step / 2));
 }
-
-// Velocities belong to the middle of the last step, so with steps of changing length the next kick spans half of both;
-// otherwise a fall through sub-steps would not conserve energy.
-double kick_time(double last_step, double step) { return (last_step + step) / 2; }
 
 }  // namespace
 
@@ -157,6 +152,10 @@ Vec3 Dynamics::acceleration_of(const Body& body) const {
   return body.is_dynamic() && !body.asleep ? gravity_ : Vec3(Vec3::Zero());
 }
 
+// Velocities belong to the middle of a body's last step, so with steps of changing length the next kick spans half of
+// both; otherwise a fall through sub-steps would not conserve energy. What gravity adds from there to `time` after now.
+Vec3 Dynamics::gain(const Body& body, double time) const { return acceleration_of(body) * (body.last_step / 2 + time); }
+
 // Manifolds of all pairs of which one body at least is awake and one dynamic. What is hit hard wakes with all that it
 // touches, and then takes part in the same sub-step.
 void Dynamics::find_contacts(const Step& step) {
@@ -172,7 +171,7 @@ void Dynamics::find_contacts(const Step& step) {
     std::vector<Manifold> more = manifolds_of({active, waiting.end()}, step.bodies, step.ground);
     waiting.erase(active, waiting.end());
     std::move(more.begin(), more.end(), std::back_inserter(found_));
-    if (!wake(calls(step), step.history.contacts, step.bodies)) break;
+    if (!wake(calls(step), step.memory, step.bodies)) break;
   }
   std::sort(found_.begin(), found_.end(), [](const Manifold& m, const Manifold& n) { return m.pair < n.pair; });
 }
@@ -205,7 +204,7 @@ void Dynamics::load(const Step& step) {
     btPersistentManifold& manifold = *manifolds_[used_++];
     manifold.clearManifold();
     manifold.setBodies(m.a->object.get(), m.b->object.get());
-    const ContactMemory* before = find(step.history.contacts, m.pair);
+    const ContactMemory* before = find(step.memory, m.pair);
     std::vector<ContactMemory::Point> old = before ? before->points : std::vector<ContactMemory::Point>{};
     const double same_point = same_point_share * std::min(m.a->radius, m.b->radius), overlap = deepest(m);
     const bool at_birth = m.a->newborn || m.b->newborn;
@@ -235,7 +234,8 @@ void Dynamics::prepare(btPersistentManifold& manifold, double tolerance, const S
     Prepared p{&manifold, &point, normal, -relative.dot(normal), point.getDistance()};
     p.gap = p.distance + tolerance;
     p.pull = -acceleration.dot(normal);
-    p.closing = p.approach + p.pull * kick_time(step.history.last_step, step.length);
+    p.now = p.approach - (gain(a, 0) - gain(b, 0)).dot(normal);
+    p.closing = p.approach - (gain(a, step.length / 2) - gain(b, step.length / 2)).dot(normal);
     p.acts = p.gap <= std::max(touching, p.closing * step.length);
     p.hits = p.acts && p.approach > resting;
     p.hit_time = p.hits ? std::clamp(p.gap / p.closing, 0.0, step.length) : 0;
@@ -271,9 +271,9 @@ void Dynamics::apply(const Prepared& p, const Step& step) {
   p.point->setDistance(!p.acts ? out_of_reach : p.hits ? std::min(p.gap, 0.0) : p.gap);
   p.point->m_combinedFriction = std::sqrt(a.friction * b.friction);
   p.point->m_combinedRestitution = 0;
-  p.point->m_appliedImpulse *= p.acts ? step.length / step.history.last_step : 0;
+  p.point->m_appliedImpulse *= p.acts ? step.length / (a.is_dynamic() ? a : b).last_step : 0;
   if (!p.hits) return;
-  const Fall fall{p.approach, p.pull, std::max(p.gap, 0.0), step.history.last_step, step.length};
+  const Fall fall{p.now, p.pull, std::max(p.gap, 0.0), step.length};
   p.point->m_combinedRestitution = leaving_speed(fall, a.restitution * b.restitution, p.hit_time) / p.approach;
 }
 
@@ -289,12 +289,12 @@ void Dynamics::move_to_hits(const Step& step) {
 
 // All awake bodies in one group: islands do not act on each other, so nothing is gained by solving them apart.
 void Dynamics::solve(const Step& step) {
-  const double kick = kick_time(step.history.last_step, step.length) / step.length;
   btAlignedObjectArray<btCollisionObject*> objects;
   for (Body* body : step.bodies) {
     if (!body->is_awake()) continue;
     objects.push_back(body->object.get());
-    if (body->is_dynamic()) body->object->applyCentralForce(to_bullet(gravity_ * (kick * body->mass)));
+    const Vec3 kick = gain(*body, step.length / 2);
+    if (body->is_dynamic()) body->object->applyCentralForce(to_bullet(kick * (body->mass / step.length)));
   }
   if (objects.size() == 0) return;
   btAlignedObjectArray<btPersistentManifold*> manifolds;
@@ -326,18 +326,18 @@ void Dynamics::harvest(const Step& step) {
     if (id == ground_id) return true;
     const auto found = std::lower_bound(step.bodies.begin(), step.bodies.end(), id,
                                         [](const Body* body, BodyId wanted) { return body->id < wanted; });
-    return !(*found)->is_awake();
+    return found == step.bodies.end() || (*found)->id != id || !(*found)->is_awake();
   };
-  for (const ContactMemory& old : step.history.contacts)
+  for (const ContactMemory& old : step.memory)
     if (sleeps(old.pair.body_a) && sleeps(old.pair.body_b)) next_contacts_.push_back(old);
   std::sort(next_contacts_.begin(), next_contacts_.end(),
             [](const ContactMemory& m, const ContactMemory& n) { return m.pair < n.pair; });
-  step.history.contacts.swap(next_contacts_);
+  step.memory.swap(next_contacts_);
 }
 
-void Dynamics::advance(const std::vector<Body*>& bodies, Body* ground, double time_step, History& history,
-                       ContactLog& log) {
-  const Step step{bodies, ground, time_step, history, log};
+void Dynamics::advance(const std::vector<Body*>& bodies, Body* ground, double time_step,
+                       std::vector<ContactMemory>& memory, ContactLog& log) {
+  const Step step{bodies, ground, time_step, memory, log};
   for (Body* body : bodies) {
     body->reach = reach_of(*body, gravity_.norm(), time_step);
     body->hit_time = std::numeric_limits<double>::infinity();
@@ -355,9 +355,9 @@ void Dynamics::advance(const std::vector<Body*>& bodies, Body* ground, double ti
   for (Body* body : bodies) {
     if (body->is_awake()) integrate(*body, time_step - (std::isfinite(body->hit_time) ? body->hit_time : 0));
     body->newborn = false;
+    body->last_step = time_step;
   }
   let_sleep(touching, bodies, time_step);
-  history.last_step = time_step;
 }
 
 }  // namespace sunder::rigid::detail

@@ -1,7 +1,7 @@
 #pragma once
 /// One sub-step of all bodies: contacts are found, prepared, solved by Bullet's sequential impulses, and bodies moved.
-/// All that one sub-step leaves to the next lies open in `History` and in the bodies, so a world that is put together
-/// from them goes on to the same bits.
+/// All that one sub-step leaves to the next lies open in the memory of contacts and in the bodies, so a world that is
+/// put together from them goes on to the same bits.
 #include <memory>
 #include <vector>
 
@@ -14,17 +14,14 @@
 
 namespace sunder::rigid::detail {
 
-struct History {
-  std::vector<ContactMemory> contacts;  ///< in order of their pairs
-  double last_step = 0;                 ///< length of the last sub-step [s]
-};
-
 class Dynamics {
  public:
   explicit Dynamics(const Vec3& gravity);
 
-  /// `bodies` in order of their ids; `ground` may be null. Appends to the log.
-  void advance(const std::vector<Body*>& bodies, Body* ground, double time_step, History& history, ContactLog& log);
+  /// `bodies` in order of their ids, all of one group; `ground` may be null; `memory` of contacts among them, in order
+  /// of its pairs. Appends to the log.
+  void advance(const std::vector<Body*>& bodies, Body* ground, double time_step, std::vector<ContactMemory>& memory,
+               ContactLog& log);
 
  private:
   /// A contact point during the solve, with what the solver must not see and what it forgets.
@@ -36,6 +33,7 @@ class Dynamics {
     double speed = 0;           ///< of the two bodies against each other at the point [m/s]
     double gap = 0;             ///< distance beyond what is tolerated [m]
     double pull = 0;            ///< acceleration towards each other [m/s^2]
+    double now = 0;             ///< approach speed at the start of the step; velocities are those of half a step before
     double closing = 0;         ///< approach speed with the pull of the step
     double hit_time = 0;        ///< after the start of the step
     bool acts = false, hits = false;
@@ -45,11 +43,12 @@ class Dynamics {
     const std::vector<Body*>& bodies;
     Body* ground;
     double length;
-    History& history;
+    std::vector<ContactMemory>& memory;
     ContactLog& log;
   };
 
   Vec3 acceleration_of(const Body& body) const;
+  Vec3 gain(const Body& body, double time) const;
   void find_contacts(const Step& step);
   std::vector<Call> calls(const Step& step) const;
   void load(const Step& step);

@@ -18,8 +18,25 @@ constexpr int most_sub_steps = 512;
 constexpr double turn_per_step = 1;  // [rad]
 constexpr double most_turns = 8;
 
-// Bodies lighter than this share of the heaviest are crumbs: they take the sub-steps that others need.
+// Bodies lighter than this share of the heaviest are crumbs: they take the sub-steps that others
+// need.
 constexpr double crumb_share = 1e-6;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// Which bodies hang together, by their places in the list.
+class Joined {
+ public:
+  explicit Joined(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
+  int of(int i) {
+    while (parent_[at(i)] != i) i = parent_[at(i)] = parent_[at(parent_[at(i)])];
+    return i;
+  }
+  void join(int i, int j) { parent_[at(std::max(of(i), of(j)))] = std::min(of(i), of(j)); }
+
+ private:
+  std::vector<int> parent_;
+};
 
 double heaviest(const std::vector<Body*>& bodies) {
   double mass = 0;
@@ -40,11 +57,11 @@ StepMotion motion_of(const Body& body, const Vec3& gravity, double time_step) {
   return {shift, object.getAngularVelocity().length() * body.radius * time_step};
 }
 
-Box swept(const Body& body, const StepMotion& motion) {
-  Box box = bounds(body);
-  const Box moved = box.translated(motion.shift);
-  box.extend(moved);
-  const Vec3 margin = Vec3::Constant(motion.sweep);
+/// Whatever turn its motion takes in the step, the body stays in it.
+Box roomy(const Body& body, const StepMotion& motion) {
+  constexpr double touching = 0.02;  // of the radius: bodies at rest on each other
+  const Box box = bounds(body);
+  const Vec3 margin = Vec3::Constant(motion.shift.norm() + motion.sweep + touching * body.radius);
   return Box(box.min() - margin, box.max() + margin);
 }
 
@@ -80,34 +97,54 @@ std::vector<std::pair<int, int>> touching(const std::vector<Box>& boxes) {
   return pairs;
 }
 
-int sub_steps(const std::vector<Body*>& bodies, const Body* ground, const Vec3& gravity, double time_step) {
-  const double crumb = crumb_share * heaviest(bodies);
-  const auto counts = [&](const Body& body) { return !body.is_dynamic() || body.mass >= crumb; };
+std::vector<Group> groups(const std::vector<Body*>& bodies, const Body* ground, const Vec3& gravity, double time_step) {
   std::vector<StepMotion> motions;
-  double farthest = 0, least_stride = std::numeric_limits<double>::infinity(), fastest_turn = 0;
+  std::vector<Box> boxes;
   for (const Body* body : bodies) {
     motions.push_back(motion_of(*body, gravity, time_step));
-    if (!counts(*body)) continue;
-    farthest = std::max(farthest, motions.back().shift.norm() + motions.back().sweep);
-    least_stride = std::min(least_stride, body->stride);
-    fastest_turn = std::max(fastest_turn, motions.back().sweep / body->radius);
+    boxes.push_back(roomy(*body, motions.back()));
   }
-  if (2 * farthest <= least_stride && fastest_turn <= turn_per_step) return 1;
-  std::vector<Box> boxes;
-  for (std::size_t i = 0; i < bodies.size(); ++i) boxes.push_back(swept(*bodies[i], motions[i]));
-  double steps = 1;
-  for (const auto& [i, j] : touching(boxes)) {
-    if (!bodies[i]->is_dynamic() && !bodies[j]->is_dynamic()) continue;
-    if (!counts(*bodies[i]) || !counts(*bodies[j])) continue;
-    const auto [least, most] = std::minmax(bodies[i]->stride, bodies[j]->stride);
-    const double motion = motion_towards(*bodies[i], motions[i], *bodies[j], motions[j]);
-    steps = std::max(steps, steps_for(motion, std::max(least, stride_beside * most)));
+  const auto pairs = touching(boxes);
+  const auto is_fixed = [&](int i) { return !bodies[at(i)]->is_dynamic() && !bodies[at(i)]->is_awake(); };
+  Joined joined(bodies.size());
+  for (const auto& [i, j] : pairs)
+    if (!is_fixed(i) && !is_fixed(j)) joined.join(i, j);
+
+  const double crumb = crumb_share * heaviest(bodies);
+  const auto counts = [&](int i) { return !bodies[at(i)]->is_dynamic() || bodies[at(i)]->mass >= crumb; };
+  std::vector<std::vector<int>> members(bodies.size());
+  std::vector<double> steps(bodies.size(), 1);
+  for (int i = 0; i < static_cast<int>(bodies.size()); ++i) {
+    if (is_fixed(i)) continue;
+    members[at(joined.of(i))].push_back(i);
+    const bool lands = ground && bodies[at(i)]->is_dynamic() && boxes[at(i)].min().y() <= ground->ground_height;
+    if (!lands || !counts(i)) continue;
+    double& most = steps[at(joined.of(i))];
+    most = std::max(most, std::min(most_turns, steps_for(motions[at(i)].sweep / bodies[at(i)]->radius, turn_per_step)));
   }
-  for (std::size_t i = 0; ground && i < bodies.size(); ++i) {
-    if (boxes[i].min().y() > ground->ground_height || !bodies[i]->is_dynamic() || !counts(*bodies[i])) continue;
-    steps = std::max(steps, std::min(most_turns, steps_for(motions[i].sweep / bodies[i]->radius, turn_per_step)));
+  for (const auto& [i, j] : pairs) {
+    if (is_fixed(i) && is_fixed(j)) continue;
+    const int group = joined.of(is_fixed(i) ? j : i);
+    if (is_fixed(i)) members[at(group)].push_back(i);
+    if (is_fixed(j)) members[at(group)].push_back(j);
+    if (!counts(i) || !counts(j)) continue;
+    const Body &a = *bodies[at(i)], &b = *bodies[at(j)];
+    const auto [least, largest] = std::minmax(a.stride, b.stride);
+    const double motion = motion_towards(a, motions[at(i)], b, motions[at(j)]);
+    steps[at(group)] = std::max(steps[at(group)], steps_for(motion, std::max(least, stride_beside * largest)));
   }
-  return static_cast<int>(std::min<double>(steps, most_sub_steps));
+
+  std::vector<Group> result;
+  for (std::size_t g = 0; g < bodies.size(); ++g) {
+    std::sort(members[g].begin(), members[g].end());
+    members[g].erase(std::unique(members[g].begin(), members[g].end()), members[g].end());
+    Group group{{}, static_cast<int>(std::min<double>(steps[g], most_sub_steps))};
+    for (int i : members[g]) group.bodies.push_back(bodies[at(i)]);
+    const bool awake =
+        std::any_of(group.bodies.begin(), group.bodies.end(), [](const Body* b) { return b->is_awake(); });
+    if (awake) result.push_back(std::move(group));
+  }
+  return result;
 }
 
 std::vector<Box> part_bounds(const Body& body) {
