@@ -183,13 +183,28 @@ std::vector<Push> Simulation::pushes_of(const Hit& hit, const FractureOutcome& o
   return pushes;
 }
 
-/// A fast partner may have touched late in the step that was taken back: it is put where it touched.
+/// The step was taken back to its start, but a fast body or partner may have touched late in it: both go on to where
+/// they touched.
 void Simulation::meet_partners(const Hit& hit, const std::vector<Push>& pushes) {
-  const Vec3 centre = world_.state(hit.body).pose.position;
+  rigid::BodyState body = world_.state(hit.body);
+  double soonest = std::numeric_limits<double>::infinity();
+  const auto way_to_meet = [&](std::size_t l) {
+    return Vec3(body.pose.position + pushes[l].arm - pushes[l].partner_arm -
+                world_.state(hit.impacts[l].body_b).pose.position);
+  };
+  for (std::size_t l = 0; l < pushes.size(); ++l) {
+    if (pushes[l].partner < 0) continue;
+    const Vec3 closing = world_.state(hit.impacts[l].body_b).twist.linear - body.twist.linear;
+    if (closing.norm() > 0) soonest = std::min(soonest, way_to_meet(l).dot(closing) / closing.squaredNorm());
+  }
+  if (std::isfinite(soonest) && motion_of(state_.live.at(hit.body)) == rigid::Motion::dynamic) {
+    body.pose.position += std::max(soonest, 0.0) * body.twist.linear;
+    world_.set_state(hit.body, body);
+  }
   for (std::size_t l = 0; l < pushes.size(); ++l) {
     if (pushes[l].partner < 0) continue;
     rigid::BodyState other = world_.state(hit.impacts[l].body_b);
-    other.pose.position = centre + pushes[l].arm - pushes[l].partner_arm;
+    other.pose.position += way_to_meet(l);
     world_.set_state(hit.impacts[l].body_b, other);
   }
 }
@@ -247,6 +262,8 @@ std::vector<Twist> Simulation::twists_of(const FractureOutcome& outcome, const s
 void Simulation::hand_over(const Hit& hit, const FractureOutcome& outcome, const std::vector<rigid::BodyId>& partners,
                            FractureRecord& record) {
   const Live parent = state_.live.at(hit.body);
+  const std::vector<Push> pushes = pushes_of(hit, outcome, partners);
+  meet_partners(hit, pushes);
   const rigid::BodyState state = world_.state(hit.body);
   const bool free = motion_of(parent) == rigid::Motion::dynamic;
   std::vector<RigidPart> body_parts, parts;
@@ -254,8 +271,6 @@ void Simulation::hand_over(const Hit& hit, const FractureOutcome& outcome, const
   for (const RigidPart& part : body_parts) parts.push_back(rotated(part, state.pose.orientation));
 
   record.kinetic_before = energy_of(hit.body) + energy_of(partners);
-  const std::vector<Push> pushes = pushes_of(hit, outcome, partners);
-  meet_partners(hit, pushes);
   std::vector<rigid::BodyId> all = partners;
   all.push_back(hit.body);
   Momentum expected = momentum_of(all, state.pose.position), delivered;

@@ -14,6 +14,7 @@
 #include "pipeline/progress_display.h"
 #include "pipeline/quality.h"
 #include "pipeline/run.h"
+#include "pipeline/simulation.h"
 #include "pipeline/still.h"
 #include "pipeline/validate.h"
 #include "sunder_version.h"
@@ -115,17 +116,20 @@ void say_plan(const EffectPlan& plan) {
 int check_command(const std::string& file, const std::optional<Quality>& quality, bool json) {
   Scene scene = load_scene(file);
   if (quality) scene.quality = *quality;
-  std::vector<double> sizes;
-  for (const SceneBody& body : scene.bodies) {
-    const BodyMesh source = body_mesh(body);
-    sizes.push_back(geometry::bounds(source.mesh).sizes().maxCoeff());
-    if (json) continue;
-    std::cout << body.name << ": " << source.mesh.faces.size() << " faces, " << body.material.name
-              << (body.breakable && body.material.breakable ? "" : ", does not break") << "\n";
-    for (const std::string& step : source.repairs) std::cout << "  repair: " << step << "\n";
-  }
-  const EffectPlan plan = plan_effects(scene, sizes);
+  // Places the bodies as a run does, so that what a run would refuse is refused here.
+  SilentProgress progress;
+  const RunOptions options;
+  Simulation simulation(scene, options, progress);
+  const EffectPlan& plan = simulation.effects();
   if (json) return std::cout << plan_json(plan).dump(2) << std::endl, 0;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const SceneBody& body = scene.bodies[b];
+    std::cout << body.name << ": " << simulation.sequence().pieces[b].mesh.faces.size() << " faces, "
+              << body.material.name << (body.breakable && body.material.breakable ? "" : ", does not break") << "\n";
+    for (const RepairRecord& repair : simulation.report().repairs)
+      for (const std::string& step : repair.steps)
+        if (repair.body == body.name) std::cout << "  repair: " << step << "\n";
+  }
   say_plan(plan);
   std::cout << "scene is valid: " << scene.duration << " s at " << scene.frame_rate << " frames/s, quality "
             << name_of(scene.quality) << std::endl;

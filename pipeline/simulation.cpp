@@ -19,6 +19,9 @@ namespace {
 /// fault.
 constexpr double tolerated_overlap = 0.05;
 
+/// Elastic bodies leave as fast as they came: they take twice the momentum that stops them.
+constexpr double most_restitution = 2;
+
 /// Hits of less than this share of the severity of the hardest on a body are left out of its solve.
 constexpr double slight_share = 0.05;
 
@@ -37,6 +40,10 @@ rigid::WorldSettings world_settings(const Scene& scene, int steps_per_frame) {
 
 int steps_in_frame(const Scene& scene) {
   return static_cast<int>(std::ceil(settings_of(scene.quality).rigid_rate / scene.frame_rate - 1e-9));
+}
+
+double reduced(double mass, double partner_mass) {
+  return std::isinf(partner_mass) ? mass : mass * partner_mass / (mass + partner_mass);
 }
 
 double extent_of(const Piece& piece) { return geometry::bounds(piece.mesh).sizes().maxCoeff(); }
@@ -195,13 +202,13 @@ double Simulation::minimum_impulse(const Live& live, double partner_mass) const 
   if (scene_.fracture.minimum_impulse) return *scene_.fracture.minimum_impulse;
   const Piece& piece = piece_of(live);
   const double energy = origin_of(live).material.fracture_energy * std::pow(piece.volume, 2.0 / 3);
-  const double m = std::isinf(partner_mass) ? piece.mass : piece.mass * partner_mass / (piece.mass + partner_mass);
+  const double m = reduced(piece.mass, partner_mass);
   return std::sqrt(2 * m * energy);
 }
 
 std::vector<Simulation::Hit> Simulation::breaking_hits(const std::vector<rigid::Impact>& impacts, double now) const {
   std::map<rigid::BodyId, Hit> hits;
-  std::map<std::pair<rigid::BodyId, rigid::BodyId>, double> impulse;
+  std::map<std::pair<rigid::BodyId, rigid::BodyId>, double> impulse, speed;
   const auto add = [&](const rigid::Impact& impact) {
     const auto live = state_.live.find(impact.body_a);
     if (live == state_.live.end() || !may_break(live->second, now)) return;
@@ -209,6 +216,8 @@ std::vector<Simulation::Hit> Simulation::breaking_hits(const std::vector<rigid::
     hit.body = impact.body_a;
     hit.impacts.push_back(impact);
     impulse[{impact.body_a, impact.body_b}] += impact.impulse;
+    double& fastest = speed[{impact.body_a, impact.body_b}];
+    fastest = std::max(fastest, impact.approach_speed);
   };
   for (const rigid::Impact& impact : impacts) {
     add(impact);
@@ -223,7 +232,10 @@ std::vector<Simulation::Hit> Simulation::breaking_hits(const std::vector<rigid::
   for (const auto& [pair, sum] : impulse) {
     Hit& hit = hits.at(pair.first);
     hit.impulse += sum;
-    severity[pair] = sum / minimum_impulse(state_.live.at(pair.first), free_mass(pair.second));
+    // A stack passes on what its top takes; what loads a body is what its own contact can stop.
+    const double stopped =
+        most_restitution * reduced(piece_of(state_.live.at(pair.first)).mass, free_mass(pair.second)) * speed[pair];
+    severity[pair] = std::min(sum, stopped) / minimum_impulse(state_.live.at(pair.first), free_mass(pair.second));
     hit.severity = std::max(hit.severity, severity[pair]);
   }
   // A crumb that touches a body just as it breaks is no load, and its lightness would cost a thousand times the steps.

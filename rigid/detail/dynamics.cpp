@@ -271,7 +271,9 @@ void Dynamics::apply(const Prepared& p, const Step& step) {
   p.point->setDistance(!p.acts ? out_of_reach : p.hits ? std::min(p.gap, 0.0) : p.gap);
   p.point->m_combinedFriction = std::sqrt(a.friction * b.friction);
   p.point->m_combinedRestitution = 0;
-  p.point->m_appliedImpulse *= p.acts ? step.length / (a.is_dynamic() ? a : b).last_step : 0;
+  // A push within a short sub-step is no measure of what a long one needs: scaled up, it would throw bodies about.
+  const double last_step = (a.is_dynamic() ? a : b).last_step;
+  p.point->m_appliedImpulse *= p.acts ? std::min(1.0, step.length / last_step) : 0;
   if (!p.hits) return;
   const Fall fall{p.now, p.pull, std::max(p.gap, 0.0), step.length};
   p.point->m_combinedRestitution = leaving_speed(fall, a.restitution * b.restitution, p.hit_time) / p.approach;
