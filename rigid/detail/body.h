@@ -26,12 +26,14 @@ struct Body {
   std::vector<Hull> parts;                                    ///< principal axes; empty for the ground
   double ground_height = 0;                                   ///< of the ground only
   double radius = 0;                                          ///< of the bounding sphere about the centre of mass [m]
-  double reach = 0;       ///< how far it can come in a sub-step: contacts are looked for that far [m]
-  double stride = 0;      ///< largest motion that a contact search may skip [m]
-  bool asleep = false;    ///< at rest until something wakes it; the solver then takes it for fixed
-  double last_step = 0;   ///< length of its last sub-step [s]
-  double quiet_time = 0;  ///< for how long it has been slow [s]
-  double slow_speed = 0;  ///< below it, and below slow_speed / radius of spin, it is slow [m/s]
+  double reach = 0;             ///< how far it can come in a sub-step: contacts are looked for that far [m]
+  double stride = 0;            ///< largest motion that a contact search may skip [m]
+  std::vector<Box> part_boxes;  ///< of all parts, at the start of the sub-step
+  Box box;                      ///< around them
+  bool asleep = false;          ///< at rest until something wakes it; the solver then takes it for fixed
+  double last_step = 0;         ///< length of its last sub-step [s]
+  double quiet_time = 0;        ///< for how long it has been slow [s]
+  double slow_speed = 0;        ///< below it, and below slow_speed / radius of spin, it is slow [m/s]
   std::unique_ptr<btCollisionShape> shape;
   std::unique_ptr<btRigidBody> object;
 

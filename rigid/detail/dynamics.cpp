@@ -8,6 +8,7 @@
 
 #include "rigid/detail/contact.h"
 #include "rigid/detail/convert.h"
+#include "rigid/detail/encounters.h"
 
 namespace sunder::rigid::detail {
 namespace {
@@ -181,6 +182,11 @@ std::vector<Call> Dynamics::calls(const Step& step) const {
   std::vector<Call> list;
   for (const Manifold& m : found_) {
     if (!m.a->asleep && !m.b->asleep) continue;
+    const ContactMemory* known = find(step.memory, m.pair);
+    if (deepest(m) - (known ? known->tolerated : 0) > deepest_rest(*m.a, *m.b)) {
+      list.push_back({m.a->id, make_room(*m.a)});
+      list.push_back({m.b->id, make_room(*m.b)});
+    }
     for (const Contact& contact : m.contacts) {
       const Vec3 relative = velocity_at(*m.a->object, contact.on_a) - velocity_at(*m.b->object, contact.on_b);
       const double touching = touching_share * std::min(m.a->radius, m.b->radius);
@@ -341,6 +347,9 @@ void Dynamics::advance(const std::vector<Body*>& bodies, Body* ground, double ti
                        std::vector<ContactMemory>& memory, ContactLog& log) {
   const Step step{bodies, ground, time_step, memory, log};
   for (Body* body : bodies) {
+    body->part_boxes = part_bounds(*body);
+    body->box.setEmpty();
+    for (const Box& box : body->part_boxes) body->box.extend(box);
     body->reach = reach_of(*body, gravity_.norm(), time_step);
     body->hit_time = std::numeric_limits<double>::infinity();
   }
@@ -350,9 +359,11 @@ void Dynamics::advance(const std::vector<Body*>& bodies, Body* ground, double ti
   for (const Prepared& p : prepared_) apply(p, step);
   move_to_hits(step);
   solve(step);
-  std::vector<std::pair<Body*, Body*>> touching;
-  for (const Prepared& p : prepared_)
-    if (p.acts) touching.emplace_back(&body_of(*p.manifold->getBody0()), &body_of(*p.manifold->getBody1()));
+  std::vector<Touch> touching;
+  for (const Prepared& p : prepared_) {
+    Body &a = body_of(*p.manifold->getBody0()), &b = body_of(*p.manifold->getBody1());
+    if (p.acts) touching.push_back({&a, &b, -p.gap > deepest_rest(a, b)});
+  }
   harvest(step);
   for (Body* body : bodies) {
     if (body->is_awake()) integrate(*body, time_step - (std::isfinite(body->hit_time) ? body->hit_time : 0));

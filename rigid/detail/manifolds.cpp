@@ -27,10 +27,14 @@ void collide_with_ground(Body& a, Body& ground, std::vector<Manifold>& list) {
 void collide(Body& a, Body& b, std::vector<Manifold>& list) {
   const btTransform &place_a = a.object->getWorldTransform(), &place_b = b.object->getWorldTransform();
   const double reach = a.reach + b.reach;
-  const std::vector<Box> boxes_a = part_bounds(a), boxes_b = part_bounds(b);
+  const auto near = [&](const Box& x, const Box& y) { return x.squaredExteriorDistance(y) <= reach * reach; };
+  std::vector<std::size_t> parts_b;
+  for (std::size_t j = 0; j < b.parts.size(); ++j)
+    if (near(a.box, b.part_boxes[j])) parts_b.push_back(j);
   for (std::size_t i = 0; i < a.parts.size(); ++i) {
-    for (std::size_t j = 0; j < b.parts.size(); ++j) {
-      if (boxes_a[i].squaredExteriorDistance(boxes_b[j]) > reach * reach) continue;
+    if (!near(a.part_boxes[i], b.box)) continue;
+    for (const std::size_t j : parts_b) {
+      if (!near(a.part_boxes[i], b.part_boxes[j])) continue;
       auto touching = contacts(a.parts[i], place_a, b.parts[j], place_b, reach);
       if (touching.empty()) continue;
       list.push_back({{a.id, b.id, static_cast<int>(i), static_cast<int>(j)}, &a, &b, std::move(touching)});
@@ -38,12 +42,21 @@ void collide(Body& a, Body& b, std::vector<Manifold>& list) {
   }
 }
 
+/// Boxes of turned bodies are too large at their corners.
+bool spheres_are_near(const Body& a, const Body& b) {
+  const btVector3 apart = a.object->getCenterOfMassPosition() - b.object->getCenterOfMassPosition();
+  return apart.length() <= a.radius + b.radius + a.reach + b.reach;
+}
+
 }  // namespace
 
 std::vector<BodyPair> near_pairs(const std::vector<Body*>& bodies, const Body* ground) {
   std::vector<Box> boxes;
-  for (const Body* body : bodies) boxes.push_back(widened(bounds(*body), body->reach));
+  for (const Body* body : bodies) boxes.push_back(widened(body->box, body->reach));
   std::vector<BodyPair> pairs = touching(boxes);
+  std::erase_if(pairs, [&](const BodyPair& p) {
+    return !spheres_are_near(*bodies[static_cast<std::size_t>(p.first)], *bodies[static_cast<std::size_t>(p.second)]);
+  });
   for (std::size_t i = 0; ground && i < bodies.size(); ++i)
     if (boxes[i].min().y() <= ground->ground_height) pairs.emplace_back(static_cast<int>(i), ground_index);
   std::sort(pairs.begin(), pairs.end());

@@ -9,6 +9,8 @@ namespace {
 
 // A body that was slow for so long may sleep [s].
 constexpr double quiet_time = 0.5;
+// Of the smaller radius.
+constexpr double resting_depth = 4e-3;
 // Share of a call that a woken body passes on.
 constexpr double passed_on = 0.5;
 constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -72,14 +74,17 @@ bool wake(std::vector<Call> calls, const std::vector<ContactMemory>& contacts, c
   return true;
 }
 
-void let_sleep(const std::vector<std::pair<Body*, Body*>>& touching, const std::vector<Body*>& bodies,
-               double time_step) {
+double deepest_rest(const Body& a, const Body& b) { return resting_depth * std::min(a.radius, b.radius); }
+
+double make_room(const Body& sleeper) { return 4 * sleeper.slow_speed; }
+
+void let_sleep(const std::vector<Touch>& touching, const std::vector<Body*>& bodies, double time_step) {
   for (Body* body : bodies)
     if (body->is_dynamic() && !body->asleep) body->quiet_time = is_slow(*body) ? body->quiet_time + time_step : 0;
   std::vector<const Body*> disturbed;
-  for (const auto& [a, b] : touching) {
-    if (b->is_awake() && !(b->quiet_time > 0)) disturbed.push_back(a);
-    if (a->is_awake() && !(a->quiet_time > 0)) disturbed.push_back(b);
+  for (const auto& [a, b, deep] : touching) {
+    if (deep || (b->is_awake() && !(b->quiet_time > 0))) disturbed.push_back(a);
+    if (deep || (a->is_awake() && !(a->quiet_time > 0))) disturbed.push_back(b);
   }
   std::sort(disturbed.begin(), disturbed.end());
   for (Body* body : bodies) {

@@ -9,6 +9,16 @@
 
 namespace sunder::rigid::detail {
 
+/// Two bodies that exchanged forces in a sub-step.
+struct Touch {
+  Body* a = nullptr;
+  Body* b = nullptr;
+  bool deep = false;  ///< they overlap by more than rest allows
+};
+
+/// Overlap [m] beyond which two bodies do not rest.
+double deepest_rest(const Body& a, const Body& b);
+
 /// A body that is to wake, and how fast what touches it would set it in motion [m/s].
 struct Call {
   BodyId id = 0;
@@ -26,9 +36,11 @@ std::vector<Call> call_neighbours(BodyId id, const std::vector<ContactMemory>& c
 /// order of ids. True when one woke.
 bool wake(std::vector<Call> calls, const std::vector<ContactMemory>& contacts, const std::vector<Body*>& bodies);
 
+/// Speed of a call to bodies that overlap: it wakes a few, so that they make room.
+double make_room(const Body& sleeper);
+
 /// After a sub-step: counts for how long bodies have been slow, and lets those sleep that have been for long enough
-/// while nothing that moves touches them. `touching`: pairs that exchanged forces.
-void let_sleep(const std::vector<std::pair<Body*, Body*>>& touching, const std::vector<Body*>& bodies,
-               double time_step);
+/// while nothing that moves touches them and they do not overlap.
+void let_sleep(const std::vector<Touch>& touching, const std::vector<Body*>& bodies, double time_step);
 
 }  // namespace sunder::rigid::detail
