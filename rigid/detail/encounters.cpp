@@ -65,21 +65,28 @@ Box roomy(const Body& body, const StepMotion& motion) {
   return Box(box.min() - margin, box.max() + margin);
 }
 
-// Beside a large body a small one may take strides of this share of the large one's.
-constexpr double stride_beside = 0.05;
+// A body that turns beside another is followed this finely [rad].
+constexpr double turn_beside = 0.5;
 
-/// How far two bodies move against each other in a step in which their bounding spheres meet [m]. Bodies that part, as
-/// fragments do after a burst, count with their spins alone.
-double motion_towards(const Body& a, const StepMotion& motion_a, const Body& b, const StepMotion& motion_b) {
+// Beside a large body a small one may take strides of this share of the large one's.
+constexpr double stride_beside = 0.15;
+
+double steps_for(double motion, double stride) { return std::ceil(motion / stride); }
+
+/// Sub-steps for two bodies whose bounding spheres meet in the step. Bodies that part, as fragments do after a burst,
+/// count with their spins alone, and what spins faster than it can be followed is as good as a disc.
+double steps_for(const Body& a, const StepMotion& motion_a, const Body& b, const StepMotion& motion_b) {
   const Vec3 apart = to_eigen(a.object->getCenterOfMassPosition() - b.object->getCenterOfMassPosition());
   const Vec3 shift = motion_a.shift - motion_b.shift;
   const double reach = a.radius + b.radius, along = apart.dot(shift), length = shift.squaredNorm();
   const double nearest = length > 0 ? std::clamp(-along / length, 0.0, 1.0) : 0;
-  if ((apart + nearest * shift).norm() > reach) return 0;
-  return motion_a.sweep + motion_b.sweep + (along < 0 ? shift.norm() : 0);
+  if ((apart + nearest * shift).norm() > reach) return 1;
+  const auto [least, largest] = std::minmax(a.stride, b.stride);
+  const double stride = std::max(least, stride_beside * largest);
+  const double turn = std::max(motion_a.sweep / a.radius, motion_b.sweep / b.radius);
+  const double turning = std::min(steps_for(motion_a.sweep + motion_b.sweep, stride), steps_for(turn, turn_beside));
+  return (along < 0 ? steps_for(shift.norm(), stride) : 0) + turning;
 }
-
-double steps_for(double motion, double stride) { return std::ceil(motion / stride); }
 
 }  // namespace
 
@@ -128,10 +135,8 @@ std::vector<Group> groups(const std::vector<Body*>& bodies, const Body* ground, 
     if (is_fixed(i)) members[at(group)].push_back(i);
     if (is_fixed(j)) members[at(group)].push_back(j);
     if (!counts(i) || !counts(j)) continue;
-    const Body &a = *bodies[at(i)], &b = *bodies[at(j)];
-    const auto [least, largest] = std::minmax(a.stride, b.stride);
-    const double motion = motion_towards(a, motions[at(i)], b, motions[at(j)]);
-    steps[at(group)] = std::max(steps[at(group)], steps_for(motion, std::max(least, stride_beside * largest)));
+    const double needed = steps_for(*bodies[at(i)], motions[at(i)], *bodies[at(j)], motions[at(j)]);
+    steps[at(group)] = std::max(steps[at(group)], needed);
   }
 
   std::vector<Group> result;
