@@ -55,6 +55,15 @@ struct RepairRecord {
   std::vector<std::string> steps;
 };
 
+/// How bodies moved, and what that took.
+struct MotionRecord {
+  rigid::StepWork work;         ///< steps that were taken back included
+  double fastest_start = 0;     ///< of the scene's bodies [m/s]
+  double fastest_fragment = 0;  ///< in any frame [m/s]
+  std::string fastest_name;     ///< of the piece
+  double fastest_time = 0;      ///< [s]
+};
+
 struct Report {
   std::string scene, quality;
   std::string fingerprint;  ///< of all that decides the results (pipeline/checkpoint.h)
@@ -65,6 +74,7 @@ struct Report {
   std::vector<FractureRecord> fractures;
   std::optional<ExtractRecord> extract;
   std::vector<RepairRecord> repairs;
+  MotionRecord motion;
   long particle_steps = 0;
   double cut_volume_error = 0;  ///< of a cut that no fracture made
   struct Seconds {

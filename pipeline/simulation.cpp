@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include <tbb/parallel_for.h>
+
 #include "core/optional_effects.h"
 #include "core/stopwatch.h"
 #include "geometry/convex_parts.h"
@@ -42,6 +44,8 @@ int steps_in_frame(const Scene& scene) {
   return static_cast<int>(std::ceil(settings_of(scene.quality).rigid_rate / scene.frame_rate - 1e-9));
 }
 
+std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
 double reduced(double mass, double partner_mass) {
   return std::isinf(partner_mass) ? mass : mass * partner_mass / (mass + partner_mass);
 }
@@ -61,10 +65,15 @@ Simulation::Simulation(const Scene& scene, const RunOptions& options, Progress& 
   state_.original_volume.resize(scene.bodies.size());
   state_.fracture_count.resize(scene.bodies.size());
   const Stopwatch watch(state_.report.seconds.setup);
+  std::vector<RigidPart> parts;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     progress.checkpoint("setup", static_cast<double>(b) / static_cast<double>(scene.bodies.size()));
-    place(scene.bodies[b], static_cast<int>(b));
+    parts.push_back(make_piece(scene.bodies[b]));
   }
+  std::vector<Hulls> hulls(parts.size());
+  tbb::parallel_for(std::size_t{0}, poses.size(),
+                    [&](std::size_t b) { hulls[b] = hulls_of(state_.sequence.pieces[b], SizeClass::nearly_whole); });
+  for (std::size_t b = 0; b < parts.size(); ++b) place(static_cast<int>(b), parts[b], std::move(hulls[b]));
   plan_effects_of_bodies();
   require_no_overlap();
 }
@@ -86,7 +95,8 @@ void Simulation::plan_effects_of_bodies() {
   effects_ = plan_effects(scene_, sizes);
 }
 
-void Simulation::place(const SceneBody& body, int index) {
+/// Adds a body of the scene to the sequence; returns its mass properties in world axes.
+RigidPart Simulation::make_piece(const SceneBody& body) {
   BodyMesh source = body_mesh(body);
   if (!source.repairs.empty()) state_.report.repairs.push_back({body.name, source.repairs});
   Piece piece;
@@ -94,15 +104,19 @@ void Simulation::place(const SceneBody& body, int index) {
   piece.name = piece.body = body.name;
   piece.material = body.material.name;
   piece.mesh = std::move(source.mesh);
-  RigidPart part = detail::centred(piece.mesh, body.material.density, piece);
-  const Pose pose{part.centre, Quat::Identity()};
-  part.centre.setZero();
+  const RigidPart part = detail::centred(piece.mesh, body.material.density, piece);
   piece.inside.assign(piece.mesh.faces.size(), false);
-  state_.original_volume[static_cast<std::size_t>(index)] = piece.volume;
-  Live live{piece.id, index, part};
-  live.start = pose.position;
-  add_body(piece, live, hulls_of(piece, SizeClass::nearly_whole), pose, {body.velocity, body.angular_velocity}, 0);
+  state_.original_volume[at(piece.id)] = piece.volume;
   state_.sequence.pieces.push_back(std::move(piece));
+  return part;
+}
+
+void Simulation::place(int index, const RigidPart& part, Hulls hulls) {
+  const SceneBody& body = scene_.bodies[at(index)];
+  Live live{index, index, {part.mass, Vec3::Zero(), part.inertia}};
+  live.start = part.centre;
+  add_body(state_.sequence.pieces[at(index)], live, std::move(hulls), {part.centre, Quat::Identity()},
+           {body.velocity, body.angular_velocity}, 0);
 }
 
 /// Empty when the piece is too thin for a hull.
@@ -261,7 +275,9 @@ std::vector<Simulation::Hit> Simulation::breaking_hits(const std::vector<rigid::
 
 std::vector<rigid::Impact> Simulation::step_world() {
   const Stopwatch watch(state_.report.seconds.rigid);
-  return world_.step();
+  std::vector<rigid::Impact> impacts = world_.step();
+  state_.report.motion.work += world_.work();
+  return impacts;
 }
 
 /// Bodies on a path get the motion that takes them to where they are to be at the end of the step.
@@ -291,10 +307,23 @@ void Simulation::step(Progress& progress) {
   }
 }
 
+void Simulation::note_speed(const Piece& piece, double speed) {
+  MotionRecord& motion = state_.report.motion;
+  if (piece.generation == 0 && world_.time() == 0) motion.fastest_start = std::max(motion.fastest_start, speed);
+  if (piece.generation == 0 || speed <= motion.fastest_fragment) return;
+  motion.fastest_fragment = speed;
+  motion.fastest_name = piece.name;
+  motion.fastest_time = world_.time();
+}
+
 void Simulation::record_frame() {
   Frame frame;
   frame.time = world_.time();
-  for (const auto& [id, live] : state_.live) frame.poses.push_back({live.piece, world_.state(id).pose});
+  for (const auto& [id, live] : state_.live) {
+    const rigid::BodyState body = world_.state(id);
+    frame.poses.push_back({live.piece, body.pose});
+    note_speed(piece_of(live), body.twist.linear.norm());
+  }
   std::sort(frame.poses.begin(), frame.poses.end(),
             [](const PiecePose& a, const PiecePose& b) { return a.piece < b.piece; });
   state_.sequence.frames.push_back(std::move(frame));

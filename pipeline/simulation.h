@@ -68,8 +68,10 @@ class Simulation {
   };
 
   static Hulls hulls_of(const Piece& piece, SizeClass size);
-  void place(const SceneBody& body, int index);
+  RigidPart make_piece(const SceneBody& body);
+  void place(int index, const RigidPart& part, Hulls hulls);
   void plan_effects_of_bodies();
+  void note_speed(const Piece& piece, double speed);
   std::vector<rigid::Impact> step_world();
   void require_no_overlap() const;
   rigid::BodyId add_body(const Piece& piece, const Live& live, Hulls hulls, const Pose& pose, const Twist& twist,

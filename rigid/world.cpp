@@ -31,6 +31,7 @@ struct World::Impl {
   std::map<BodyId, Member> members;
   std::vector<ContactMemory> contacts;  ///< in order of their pairs
   detail::Dynamics dynamics;
+  StepWork work;
   BodyId next_id = 0;
   double time = 0;
 
@@ -175,10 +176,14 @@ std::vector<Impact> World::step() {
   const WorldSettings& settings = impl_->settings;
   const std::vector<Body*> bodies = impl_->list();
   detail::ContactLog log;
+  impl_->work = {.steps = 1};
   for (const detail::Group& group : detail::groups(bodies, impl_->ground.get(), settings.gravity, settings.time_step)) {
     std::vector<ContactMemory> contacts = impl_->take_contacts(group);
     for (log.sub_step = 0; log.sub_step < group.sub_steps; ++log.sub_step)
-      impl_->dynamics.advance(group.bodies, impl_->ground.get(), settings.time_step / group.sub_steps, contacts, log);
+      impl_->dynamics.advance(group.bodies, impl_->ground.get(), settings.time_step / group.sub_steps, contacts, log,
+                              impl_->work);
+    impl_->work.sub_steps += group.sub_steps;
+    impl_->work.body_sub_steps += group.sub_steps * static_cast<long>(group.bodies.size());
     std::move(contacts.begin(), contacts.end(), std::back_inserter(impl_->contacts));
   }
   std::sort(impl_->contacts.begin(), impl_->contacts.end(),
@@ -186,6 +191,18 @@ std::vector<Impact> World::step() {
   impl_->time += settings.time_step;
   for (const Body* body : bodies) check_finite(*body, impl_->time);
   return detail::impacts(std::move(log.samples), settings.resting_speed);
+}
+
+const StepWork& World::work() const { return impl_->work; }
+
+StepWork& StepWork::operator+=(const StepWork& other) {
+  steps += other.steps;
+  sub_steps += other.sub_steps;
+  body_sub_steps += other.body_sub_steps;
+  contacts += other.contacts;
+  search_seconds += other.search_seconds;
+  solve_seconds += other.solve_seconds;
+  return *this;
 }
 
 World::Snapshot World::snapshot() const {

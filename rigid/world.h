@@ -66,6 +66,16 @@ struct Impact {
   double approach_speed = 0;  ///< normal speed of approach of the two bodies at `point` before the step, > 0 [m/s]
 };
 
+/// What steps cost.
+struct StepWork {
+  long steps = 0;
+  long sub_steps = 0;       ///< of all groups of bodies that can meet
+  long body_sub_steps = 0;  ///< bodies times sub-steps
+  long contacts = 0;        ///< contact points given to the solver
+  double search_seconds = 0, solve_seconds = 0;
+  StepWork& operator+=(const StepWork& other);
+};
+
 struct WorldSettings {
   Vec3 gravity = Vec3(0, -9.81, 0);  ///< [m/s^2]
   double time_step = 1.0 / 480;      ///< [s]
@@ -102,6 +112,8 @@ class World {
 
   /// Advances by one time step and returns its impacts, ordered by ids and then by point.
   std::vector<Impact> step();
+  /// Of the last step.
+  const StepWork& work() const;
 
   /// Where everything is, and all that the past leaves to the next step: poses, velocities, rest, contacts, the time.
   struct Snapshot {

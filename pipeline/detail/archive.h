@@ -117,6 +117,11 @@ void serialize(Archive& archive, World::Snapshot& s) {
 }
 
 template <class Archive>
+void serialize(Archive& archive, StepWork& w) {
+  archive(w.steps, w.sub_steps, w.body_sub_steps, w.contacts, w.search_seconds, w.solve_seconds);
+}
+
+template <class Archive>
 void serialize(Archive& archive, World::State& state) {
   archive(state.setups, state.snapshot, state.next_id);
 }
@@ -184,10 +189,15 @@ void serialize(Archive& archive, Report::Seconds& s) {
   archive(s.total, s.setup, s.rigid, s.sample, s.solve, s.extract, s.cut, s.write, s.checkpoint);
 }
 
+template <class Archive>
+void serialize(Archive& archive, MotionRecord& m) {
+  archive(m.work, m.fastest_start, m.fastest_fragment, m.fastest_name, m.fastest_time);
+}
+
 /// Only what a simulation has written by then; the rest is added when the run ends.
 template <class Archive>
 void serialize(Archive& archive, Report& r) {
-  archive(r.fractures, r.repairs, r.particle_steps, r.seconds, r.fallbacks, r.notes);
+  archive(r.fractures, r.repairs, r.motion, r.particle_steps, r.seconds, r.fallbacks, r.notes);
 }
 
 template <class Archive>

@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "core/stopwatch.h"
 #include "rigid/detail/contact.h"
 #include "rigid/detail/convert.h"
 #include "rigid/detail/encounters.h"
@@ -344,7 +345,7 @@ void Dynamics::harvest(const Step& step) {
 }
 
 void Dynamics::advance(const std::vector<Body*>& bodies, Body* ground, double time_step,
-                       std::vector<ContactMemory>& memory, ContactLog& log) {
+                       std::vector<ContactMemory>& memory, ContactLog& log, StepWork& work) {
   const Step step{bodies, ground, time_step, memory, log};
   for (Body* body : bodies) {
     body->part_boxes = part_bounds(*body);
@@ -353,12 +354,19 @@ void Dynamics::advance(const std::vector<Body*>& bodies, Body* ground, double ti
     body->reach = reach_of(*body, gravity_.norm(), time_step);
     body->hit_time = std::numeric_limits<double>::infinity();
   }
-  find_contacts(step);
-  load(step);
-  keep_first_hits();
-  for (const Prepared& p : prepared_) apply(p, step);
-  move_to_hits(step);
-  solve(step);
+  {
+    const Stopwatch watch(work.search_seconds);
+    find_contacts(step);
+  }
+  {
+    const Stopwatch watch(work.solve_seconds);
+    load(step);
+    keep_first_hits();
+    for (const Prepared& p : prepared_) apply(p, step);
+    move_to_hits(step);
+    solve(step);
+  }
+  work.contacts += static_cast<long>(prepared_.size());
   std::vector<Touch> touching;
   for (const Prepared& p : prepared_) {
     Body &a = body_of(*p.manifold->getBody0()), &b = body_of(*p.manifold->getBody1());

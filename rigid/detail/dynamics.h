@@ -19,9 +19,9 @@ class Dynamics {
   explicit Dynamics(const Vec3& gravity);
 
   /// `bodies` in order of their ids, all of one group; `ground` may be null; `memory` of contacts among them, in order
-  /// of its pairs. Appends to the log.
+  /// of its pairs. Adds to the log and to the work.
   void advance(const std::vector<Body*>& bodies, Body* ground, double time_step, std::vector<ContactMemory>& memory,
-               ContactLog& log);
+               ContactLog& log, StepWork& work);
 
  private:
   /// A contact point during the solve, with what the solver must not see and what it forgets.
