@@ -71,7 +71,7 @@ Simulation::Simulation(const Scene& scene, const RunOptions& options, Progress& 
     parts.push_back(make_piece(scene.bodies[b]));
   }
   std::vector<Hulls> hulls(parts.size());
-  tbb::parallel_for(std::size_t{0}, poses.size(),
+  tbb::parallel_for(std::size_t{0}, parts.size(),
                     [&](std::size_t b) { hulls[b] = hulls_of(state_.sequence.pieces[b], SizeClass::nearly_whole); });
   for (std::size_t b = 0; b < parts.size(); ++b) place(static_cast<int>(b), parts[b], std::move(hulls[b]));
   plan_effects_of_bodies();
