@@ -3,6 +3,8 @@
 #include <string>
 #include <string_view>
 
+#include <tbb/parallel_for.h>
+
 #include "core/error.h"
 #include "pipeline/detail/look.h"
 #include "pipeline/detail/sequence_checks.h"
@@ -62,26 +64,28 @@ void append_piece(TextBuffer& out, const Piece& piece, const Pose& pose, long fi
   append_faces(out, piece, true, first);
 }
 
-std::size_t estimated_size(const Sequence& sequence, const Frame& frame) {
-  std::size_t size = 1000;
-  for (const PiecePose& pose : frame.poses) {
-    const geometry::TriangleMesh& mesh = sequence.pieces.at(static_cast<std::size_t>(pose.piece)).mesh;
-    size += 200 + 45 * mesh.vertices.size() + 24 * mesh.faces.size();
-  }
-  return size;
+std::size_t estimated_size(const geometry::TriangleMesh& mesh) {
+  return 200 + 45 * mesh.vertices.size() + 24 * mesh.faces.size();
 }
 
 std::string frame_text(const Sequence& sequence, const Frame& frame) {
   detail::require_finite(sequence, frame);
-  TextBuffer out(estimated_size(sequence, frame));
+  std::vector<const Piece*> pieces;
+  std::vector<long> first = {1};
+  for (const PiecePose& pose : frame.poses) {
+    pieces.push_back(&sequence.pieces.at(static_cast<std::size_t>(pose.piece)));
+    first.push_back(first.back() + static_cast<long>(pieces.back()->mesh.vertices.size()));
+  }
+  std::vector<std::string> texts(pieces.size());
+  tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t k) {
+    TextBuffer out(estimated_size(pieces[k]->mesh));
+    append_piece(out, *pieces[k], frame.poses[k].pose, first[k]);
+    texts[k] = out.text();
+  });
+  TextBuffer out(1000);
   out << "# " << sequence.name << ", " << frame.time << " s; metres, Y up\n";
   out << "mtllib " << sequence.name << ".mtl\ns off\n";
-  long first = 1;
-  for (const auto& [index, pose] : frame.poses) {
-    const Piece& piece = sequence.pieces.at(static_cast<std::size_t>(index));
-    append_piece(out, piece, pose, first);
-    first += static_cast<long>(piece.mesh.vertices.size());
-  }
+  for (const std::string& text : texts) out << text;
   return out.text();
 }
 

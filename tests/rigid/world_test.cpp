@@ -71,6 +71,35 @@ TEST(World, AWorldMadeFromAStateGoesOnBitByBit) {
   EXPECT_EQ(copy.add(box(Vec3::Constant(0.1), Vec3(9, 1, 0))), world.add(box(Vec3::Constant(0.1), Vec3(9, 1, 0))));
 }
 
+// Each group of bodies is taken through the step by itself: a bullet in one corner makes nothing finer in another.
+TEST(World, GroupsThatCannotMeetDoNotChangeEachOther) {
+  World alone = pile(10), together = pile(10);
+  BodySetup target = box(Vec3::Constant(0.05), Vec3(50, 0.05, 0)), bullet = ball(0.005, Vec3(49, 0.05, 0), 7850);
+  bullet.twist.linear = Vec3(300, 0, 0);
+  together.add(target);
+  together.add(bullet);
+  long finest = 0;
+  for (int i = 0; i < 300; ++i) {
+    alone.step();
+    together.step();
+    finest = std::max(finest, together.work().sub_steps);
+    for (BodyId id : alone.bodies()) {
+      ASSERT_EQ(together.state(id).pose.position, alone.state(id).pose.position) << i;
+      ASSERT_EQ(together.state(id).twist.angular, alone.state(id).twist.angular) << i;
+    }
+  }
+  EXPECT_GT(finest, 10) << "the bullet was followed";
+}
+
+TEST(World, SleepingBodiesCostNothing) {
+  World world = pile(20);
+  run(world, 8);
+  world.step();
+  EXPECT_EQ(world.work().steps, 1);
+  EXPECT_EQ(world.work().sub_steps, 0) << "something is still awake after 8 s";
+  EXPECT_EQ(world.work().contacts, 0);
+}
+
 TEST(World, ThreadsDoNotMatter) {
   const auto with = [](std::size_t threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
