@@ -138,8 +138,7 @@ class Splitter {
 
 ConvexParts convex_parts(const TriangleMesh& solid, const ConvexPartsSettings& settings) {
   if (solid.faces.empty()) return {};
-  const TriangleMesh outside = detail::without_voids(solid);
-  return Splitter(outside, settings).split();
+  return Splitter(solid, settings).split();
 }
 
 }  // namespace sunder::geometry

@@ -115,8 +115,13 @@ void Simulation::place(int index, const RigidPart& part, Hulls hulls) {
   const SceneBody& body = scene_.bodies[at(index)];
   Live live{index, index, {part.mass, Vec3::Zero(), part.inertia}};
   live.start = part.centre;
-  add_body(state_.sequence.pieces[at(index)], live, std::move(hulls), {part.centre, Quat::Identity()},
-           {body.velocity, body.angular_velocity}, 0);
+  try {
+    add_body(state_.sequence.pieces[at(index)], live, std::move(hulls), {part.centre, Quat::Identity()},
+             {body.velocity, body.angular_velocity}, 0);
+  } catch (const Error& error) {
+    throw Error(error.kind(), scene_.file.string() + ":" + std::to_string(body.line) + ": body '" + body.name +
+                                  "' cannot move as a rigid body: " + error.what() + "; is it too thin or too small?");
+  }
 }
 
 /// Empty when the piece is too thin for a hull.

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <functional>
 
 #include "core/error.h"
 #include "geometry/detail/inside.h"
-#include "geometry/detail/topology.h"
 #include "geometry/mass_properties.h"
 
 namespace sunder::geometry::detail {
@@ -19,29 +17,15 @@ bool surrounds(const TriangleMesh& outer, const TriangleMesh& inner) {
   return std::any_of(inner.vertices.begin(), inner.vertices.end(), inside);
 }
 
-// Per face the number of its shell; shells that share a vertex count as one.
-std::vector<int> shell_of_faces(const TriangleMesh& mesh) {
-  DisjointSets sets(static_cast<int>(mesh.vertices.size()));
-  for (const auto& [a, b, c] : mesh.faces) {
-    sets.unite(a, b);
-    sets.unite(b, c);
-  }
-  const std::vector<int> labels = sets.labels();
-  std::vector<int> result;
-  result.reserve(mesh.faces.size());
-  for (const Triangle& face : mesh.faces) result.push_back(labels[face[0]]);
-  return result;
-}
-
 }  // namespace
 
 std::vector<std::array<int, 3>> face_neighbours(const TriangleMesh& mesh) {
-  struct FaceSide {
+  struct Side {
     std::uint64_t edge;  // lower and higher vertex
     int face, corner;
     bool rising;
   };
-  std::vector<FaceSide> sides;
+  std::vector<Side> sides;
   sides.reserve(mesh.faces.size() * 3);
   for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
     for (int k = 0; k < 3; ++k) {
@@ -50,7 +34,7 @@ std::vector<std::array<int, 3>> face_neighbours(const TriangleMesh& mesh) {
       sides.push_back({edge, static_cast<int>(face), k, mesh.faces[face][k] == low});
     }
   }
-  std::sort(sides.begin(), sides.end(), [](const FaceSide& a, const FaceSide& b) { return a.edge < b.edge; });
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.edge < b.edge; });
   std::vector<std::array<int, 3>> result(mesh.faces.size());
   for (std::size_t i = 0; i < sides.size(); i += 2) {
     const bool paired = i + 1 < sides.size() && sides[i].edge == sides[i + 1].edge &&
@@ -78,27 +62,6 @@ TriangleMesh compact(const std::vector<Vec3>& vertices, const std::vector<Triang
     mesh.faces.push_back(face);
   }
   return mesh;
-}
-
-TriangleMesh without_voids(const TriangleMesh& solid) {
-  const std::vector<int> shell = shell_of_faces(solid);
-  if (std::adjacent_find(shell.begin(), shell.end(), std::not_equal_to<>()) == shell.end()) return solid;
-  const std::vector<TriangleMesh> shells = split(solid, shell);
-  std::vector<bool> is_void;
-  for (const TriangleMesh& mesh : shells) is_void.push_back(mass_properties(mesh).volume < 0);
-  std::vector<bool> visible;
-  for (const TriangleMesh& mesh : shells) {
-    bool in_the_open = true;
-    for (std::size_t i = 0; i < shells.size(); ++i) {
-      in_the_open &= !is_void[i] || (&mesh != &shells[i] && !surrounds(shells[i], mesh));
-    }
-    visible.push_back(in_the_open);
-  }
-  std::vector<Triangle> faces;
-  for (std::size_t i = 0; i < shell.size(); ++i) {
-    if (visible[shell[i]]) faces.push_back(solid.faces[i]);
-  }
-  return compact(solid.vertices, faces);
 }
 
 std::vector<int> owners(const std::vector<const TriangleMesh*>& shells) {

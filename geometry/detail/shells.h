@@ -19,7 +19,4 @@ TriangleMesh compact(const std::vector<Vec3>& vertices, const std::vector<Triang
 /// volume.
 std::vector<int> owners(const std::vector<const TriangleMesh*>& shells);
 
-/// The solid as it looks from outside: without its voids and what lies in them. Shells must not cross.
-TriangleMesh without_voids(const TriangleMesh& solid);
-
 }  // namespace sunder::geometry::detail

@@ -325,13 +325,11 @@ TriangleMesh joined(TriangleMesh mesh, const TriangleMesh& other) {
   return mesh;
 }
 
-TEST(ConvexParts, AVoidIsNoHollow) {
-  const TriangleMesh hollow = hollow_sphere(1, 0.2, 3);
-  for (const TriangleMesh& solid : {hollow, joined(hollow, sphere(0.3, 2)), joined(sphere(0.3, 2), hollow)}) {
-    const ConvexParts parts = convex_parts(solid);
-    ASSERT_EQ(parts.hulls.size(), 1u);
-    EXPECT_EQ(parts.hulls[0].vertices, convex_parts(sphere(1, 3)).hulls[0].vertices);
-  }
+// What lies in a void has to stay there.
+TEST(ConvexParts, AVoidIsAHollow) {
+  const ConvexParts parts = convex_parts(hollow_sphere(1, 0.2, 3), {.max_parts = 40});
+  EXPECT_GT(parts.hulls.size(), 6u);
+  expect_free(parts, Vec3::Zero(), 0.5);
 }
 
 TEST(ConvexParts, ShellsApartAreHulledApart) {

@@ -140,6 +140,54 @@ glb = false
   EXPECT_LT(last_pose(result.sequence, 1).position.x(), -0.01);
 }
 
+// Hulls that closed the bowl would keep the marble out, or throw it off.
+TEST_F(Motion, AGobletHoldsAMarble) {
+  const RunResult result = run_scene(scene(R"(
+[scene]
+duration = 1.5
+frame_rate = 20
+[ground]
+[[body]]
+name = "goblet"
+mesh = "goblet"
+height = 0.2
+wall = 0.003
+material = "glass"
+breakable = false
+[[body]]
+name = "marble"
+mesh = "sphere"
+height = 0.02
+anchor = "centre"
+position = [0.004, 0.18, 0.003]
+material = "glass"
+breakable = false
+[output]
+obj = false
+glb = false
+)"));
+  const Vec3 goblet = result.sequence.frames.front().poses[0].pose.position;
+  EXPECT_LT((last_pose(result.sequence, 0).position - goblet).norm(), 2e-3) << "the goblet stands";
+  const Vec3 marble = last_pose(result.sequence, 1).position;
+  EXPECT_GT(marble.y(), 0.08) << "above the stem";
+  EXPECT_LT(marble.y(), 0.12) << "well below the rim";
+  EXPECT_LT(std::hypot(marble.x(), marble.z()), 0.02);
+}
+
+TEST_F(Motion, ABodyWithoutSubstanceIsRefusedByName) {
+  for (const char* thickness : {"1e-9", "1e-160"}) {
+    try {
+      run_scene(scene("[[body]]\nname = \"sheet\"\nmesh = \"box\"\nsize = [0.2, " + std::string(thickness) +
+                      ", 0.2]\nmaterial = \"glass\"\n"));
+      FAIL() << "took a box " << thickness << " m thick";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::usage);
+      EXPECT_NE(std::string(error.what()).find("scene.toml:1: body 'sheet' cannot move"), std::string::npos)
+          << error.what();
+    }
+  }
+}
+
 TEST_F(Motion, NothingBreaksAnyMoreOnceThereAreEnoughFragments) {
   Scene many = scene(R"(
 [scene]
@@ -151,11 +199,19 @@ quality = "draft"
 name = "pane"
 mesh = "plate"
 size = [0.2, 0.01, 0.2]
-position = [0, 0.001, 0]
-velocity = [0, -8, 0]
+position = [0, 0.1, 0]
 material = "glass"
+[[body]]
+name = "ball"
+mesh = "sphere"
+size = [0.02, 0.02, 0.02]
+anchor = "centre"
+position = [0.03, 0.13, 0.02]
+velocity = [0, -10, 0]
+material = "steel"
 [fracture]
 refracture_delay = 0.002
+minimum_impulse = 0.002
 minimum_volume = 0.01
 maximum_fractures = 50
 [output]
