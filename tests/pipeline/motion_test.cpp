@@ -191,7 +191,7 @@ TEST_F(Motion, ABodyWithoutSubstanceIsRefusedByName) {
 TEST_F(Motion, NothingBreaksAnyMoreOnceThereAreEnoughFragments) {
   Scene many = scene(R"(
 [scene]
-duration = 0.3
+duration = 0.24
 frame_rate = 60
 quality = "draft"
 [ground]
@@ -199,14 +199,14 @@ quality = "draft"
 name = "pane"
 mesh = "plate"
 size = [0.2, 0.01, 0.2]
-position = [0, 0.1, 0]
+position = [0, 0.3, 0]
 material = "glass"
 [[body]]
 name = "ball"
 mesh = "sphere"
 size = [0.02, 0.02, 0.02]
 anchor = "centre"
-position = [0.03, 0.13, 0.02]
+position = [0.03, 0.33, 0.02]
 velocity = [0, -10, 0]
 material = "steel"
 [fracture]
