@@ -305,10 +305,16 @@ void Simulation::step(Progress& progress) {
   }
   for (;;) {
     const auto before = world_.snapshot();
+    const rigid::StepWork work = state_.report.motion.work;
     const auto hits = breaking_hits(step_world(), before.time);
     if (hits.empty()) return;
     world_.restore(before);
-    break_bodies(hits, progress);
+    try {
+      break_bodies(hits, progress);
+    } catch (...) {
+      state_.report.motion.work = work;  // the step will be taken again
+      throw;
+    }
   }
 }
 
