@@ -84,8 +84,8 @@ double steps_for(const Body& a, const StepMotion& motion_a, const Body& b, const
   const auto [least, largest] = std::minmax(a.stride, b.stride);
   const double stride = std::max(least, stride_beside * largest);
   const double turn = std::max(motion_a.sweep / a.radius, motion_b.sweep / b.radius);
-  const double turning = std::min(steps_for(motion_a.sweep + motion_b.sweep, stride), steps_for(turn, turn_beside));
-  return (along < 0 ? steps_for(shift.norm(), stride) : 0) + turning;
+  const double turning = std::min((motion_a.sweep + motion_b.sweep) / stride, turn / turn_beside);
+  return std::ceil((along < 0 ? shift.norm() / stride : 0) + turning);
 }
 
 }  // namespace
