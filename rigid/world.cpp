@@ -200,6 +200,7 @@ StepWork& StepWork::operator+=(const StepWork& other) {
   sub_steps += other.sub_steps;
   body_sub_steps += other.body_sub_steps;
   contacts += other.contacts;
+  limited_speeds += other.limited_speeds;
   search_seconds += other.search_seconds;
   solve_seconds += other.solve_seconds;
   return *this;

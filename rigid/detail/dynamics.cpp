@@ -23,6 +23,8 @@ constexpr double patch_share = 0.5;
 // Free rotation turns at most this angle per integration stage [rad].
 constexpr double turn_per_stage = 0.005;
 constexpr int most_stages = 64;
+// Of the energy of a rotation: more in one step is a rotation that was not followed.
+constexpr double most_energy_error = 0.01;
 // Of the radius: contacts of bodies at rest are looked for this far.
 constexpr double least_reach = 0.01;
 // A point closer than this share of the smaller radius to one of the last step takes over its impulse as a first guess.
@@ -46,18 +48,24 @@ Vec3 spin(const Quat& orientation, const Vec3& moments, const Vec3& angular_mome
 
 // Torque-free rotation by the explicit midpoint rule on the orientation with the angular momentum held: |L| is exact
 // and the energy stays between L^2 / 2 I_max and L^2 / 2 I_min at any step, which none of Bullet's gyroscopic options
-// offers.
+// offers. Those bounds are far apart for a needle, and what spins too fast to be followed would wander between them: it
+// turns about its axis instead, which keeps energy and |L|.
 void rotate_freely(Quat& orientation, Vec3& angular, const Vec3& moments, double time_step) {
   const Vec3 local = orientation.conjugate() * angular;
   const Vec3 momentum = orientation * Vec3(local.cwiseProduct(moments));
-  const double angle = angular.norm() * time_step;
+  const double angle = angular.norm() * time_step, energy = angular.dot(momentum);
   const int stages = std::clamp(static_cast<int>(std::ceil(angle / turn_per_stage)), 1, most_stages);
   const double h = time_step / stages;
+  Quat turned = orientation;
+  Vec3 spinning = angular;
   for (int i = 0; i < stages; ++i) {
-    const Quat middle = turn_by(angular * (h / 2)) * orientation;
-    orientation = (turn_by(spin(middle, moments, momentum) * h) * orientation).normalized();
-    angular = spin(orientation, moments, momentum);
+    const Quat middle = turn_by(spinning * (h / 2)) * turned;
+    turned = (turn_by(spin(middle, moments, momentum) * h) * turned).normalized();
+    spinning = spin(turned, moments, momentum);
   }
+  const bool lost = std::abs(spinning.dot(momentum) - energy) > most_energy_error * energy;
+  orientation = lost ? (turn_by(angular * time_step) * orientation).normalized() : turned;
+  if (!lost) angular = spinning;
 }
 
 void integrate(Body& body, double time_step) {
@@ -134,6 +142,16 @@ double leaving_speed(const Fall& fall, double restitution, double hit_time) {
   const double leaving = restitution * std::sqrt(std::max(0.0, fall.now * fall.now + 2 * fall.pull * fall.gap));
   if (leaving <= fall.pull * fall.step) return 0;
   return std::max(0.0, leaving + fall.pull * (hit_time - fall.step / 2));
+}
+
+double speed_of(const Body& body) {
+  return std::max(body.object->getLinearVelocity().length(), body.object->getAngularVelocity().length() * body.radius);
+}
+
+double fastest_of(const std::vector<Body*>& bodies) {
+  double speed = 0;
+  for (const Body* body : bodies) speed = std::max(speed, speed_of(*body));
+  return speed;
 }
 
 }  // namespace
@@ -296,6 +314,22 @@ void Dynamics::move_to_hits(const Step& step) {
   }
 }
 
+// A light body that a heavy one hits leaves with at most twice its speed. Between heavy bodies a crumb can bring the
+// iteration to any speed: what is beyond all reason is cut off and counted.
+int Dynamics::limit_speeds(const Step& step, double fastest) const {
+  constexpr double most_gain = 4;
+  const double most = most_gain * (fastest + gravity_.norm() * step.length);
+  int limited = 0;
+  for (Body* body : step.bodies) {
+    if (!body->is_dynamic() || body->asleep || speed_of(*body) <= most) continue;
+    const double share = most / speed_of(*body);
+    body->object->setLinearVelocity(body->object->getLinearVelocity() * share);
+    body->object->setAngularVelocity(body->object->getAngularVelocity() * share);
+    ++limited;
+  }
+  return limited;
+}
+
 // All awake bodies in one group: islands do not act on each other, so nothing is gained by solving them apart.
 void Dynamics::solve(const Step& step) {
   btAlignedObjectArray<btCollisionObject*> objects;
@@ -364,7 +398,9 @@ void Dynamics::advance(const std::vector<Body*>& bodies, Body* ground, double ti
     keep_first_hits();
     for (const Prepared& p : prepared_) apply(p, step);
     move_to_hits(step);
+    const double fastest = fastest_of(bodies);
     solve(step);
+    work.limited_speeds += limit_speeds(step, fastest);
   }
   work.contacts += static_cast<long>(prepared_.size());
   std::vector<Touch> touching;
