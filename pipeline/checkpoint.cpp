@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 #include "core/error.h"
@@ -67,7 +68,9 @@ std::string fingerprint(const Scene& scene) {
   hash.add_file(scene.file);
   hash.add_file(default_assets().materials);
   hash.add_file(default_assets().meshes);
-  for (const SceneBody& body : scene.bodies) hash.add_file(body.mesh.file);
+  std::set<fs::path> meshes;
+  for (const SceneBody& body : scene.bodies) meshes.insert(body.mesh.file);
+  for (const fs::path& mesh : meshes) hash.add_file(mesh);
   for (const double number : {scene.duration, scene.frame_rate, static_cast<double>(scene.quality)}) hash.add(number);
   hash.add(std::to_string(scene.seed));
   return hash.digits();

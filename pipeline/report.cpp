@@ -205,7 +205,6 @@ std::string to_json(const Report& report, const Sequence& sequence) {
         {"sub_steps", report.motion.work.sub_steps},
         {"body_sub_steps", report.motion.work.body_sub_steps},
         {"contacts", report.motion.work.contacts},
-        {"limited_speeds", report.motion.work.limited_speeds},
         {"fastest_start", report.motion.fastest_start},
         {"fastest_fragment",
          {{"name", report.motion.fastest_name},

@@ -10,6 +10,7 @@
 #include "core/stopwatch.h"
 #include "geometry/convex_parts.h"
 #include "geometry/primitives.h"
+#include "mpm/contact_load.h"
 #include "pipeline/detail/piece_mesh.h"
 #include "pipeline/lifecycle.h"
 #include "pipeline/quality.h"
@@ -45,10 +46,6 @@ int steps_in_frame(const Scene& scene) {
 }
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
-double reduced(double mass, double partner_mass) {
-  return std::isinf(partner_mass) ? mass : mass * partner_mass / (mass + partner_mass);
-}
 
 double extent_of(const Piece& piece) { return geometry::bounds(piece.mesh).sizes().maxCoeff(); }
 
@@ -221,7 +218,7 @@ double Simulation::minimum_impulse(const Live& live, double partner_mass) const 
   if (scene_.fracture.minimum_impulse) return *scene_.fracture.minimum_impulse;
   const Piece& piece = piece_of(live);
   const double energy = origin_of(live).material.fracture_energy * std::pow(piece.volume, 2.0 / 3);
-  const double m = reduced(piece.mass, partner_mass);
+  const double m = mpm::reduced_mass(piece.mass, partner_mass);
   return std::sqrt(2 * m * energy);
 }
 
@@ -252,8 +249,9 @@ std::vector<Simulation::Hit> Simulation::breaking_hits(const std::vector<rigid::
     Hit& hit = hits.at(pair.first);
     hit.impulse += sum;
     // A stack passes on what its top takes; what loads a body is what its own contact can stop.
-    const double stopped =
-        most_restitution * reduced(piece_of(state_.live.at(pair.first)).mass, free_mass(pair.second)) * speed[pair];
+    const double stopped = most_restitution *
+                           mpm::reduced_mass(piece_of(state_.live.at(pair.first)).mass, free_mass(pair.second)) *
+                           speed[pair];
     severity[pair] = std::min(sum, stopped) / minimum_impulse(state_.live.at(pair.first), free_mass(pair.second));
     hit.severity = std::max(hit.severity, severity[pair]);
   }

@@ -41,7 +41,7 @@ struct World::Impl {
     Body& body = *members.emplace(id, Member{setup, detail::make_body(id, setup, settings.gravity)}).first->second.body;
     body.last_step = settings.time_step;
   }
-  std::vector<ContactMemory> take_contacts(const detail::Group& group);
+  std::vector<std::vector<ContactMemory>> take_contacts(std::size_t group_count, const std::vector<Body*>& bodies);
 };
 
 Body& World::Impl::at(BodyId id) const {
@@ -56,19 +56,19 @@ std::vector<Body*> World::Impl::list() const {
   return result;
 }
 
-/// Those of bodies of the group that can move. What stands still may be in several groups, but its contacts are with
-/// bodies that are not.
-std::vector<ContactMemory> World::Impl::take_contacts(const detail::Group& group) {
-  const auto is_member = [&](BodyId id) {
-    const auto found = std::lower_bound(group.bodies.begin(), group.bodies.end(), id,
-                                        [](const Body* body, BodyId wanted) { return body->id < wanted; });
-    return found != group.bodies.end() && (*found)->id == id && ((*found)->is_dynamic() || (*found)->is_awake());
-  };
-  std::vector<ContactMemory> taken;
+/// Takes the contacts of each group out of the memory; those of sleepers stay. What stands still may be in several
+/// groups, but its contacts are with bodies that are in one.
+std::vector<std::vector<ContactMemory>> World::Impl::take_contacts(std::size_t group_count,
+                                                                   const std::vector<Body*>& bodies) {
+  std::vector<std::vector<ContactMemory>> taken(group_count);
   std::erase_if(contacts, [&](ContactMemory& contact) {
-    const bool belongs = is_member(contact.pair.body_a) || is_member(contact.pair.body_b);
-    if (belongs) taken.push_back(std::move(contact));
-    return belongs;
+    for (const BodyId id : {contact.pair.body_a, contact.pair.body_b}) {
+      const Body* body = detail::find_body(bodies, id);
+      if (!body || body->group < 0) continue;
+      taken[static_cast<std::size_t>(body->group)].push_back(std::move(contact));
+      return true;
+    }
+    return false;
   });
   return taken;
 }
@@ -177,8 +177,11 @@ std::vector<Impact> World::step() {
   const std::vector<Body*> bodies = impl_->list();
   detail::ContactLog log;
   impl_->work = {.steps = 1};
-  for (const detail::Group& group : detail::groups(bodies, impl_->ground.get(), settings.gravity, settings.time_step)) {
-    std::vector<ContactMemory> contacts = impl_->take_contacts(group);
+  const auto groups = detail::groups(bodies, impl_->ground.get(), settings.gravity, settings.time_step);
+  auto contacts_of_groups = impl_->take_contacts(groups.size(), bodies);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const detail::Group& group = groups[g];
+    std::vector<ContactMemory>& contacts = contacts_of_groups[g];
     for (log.sub_step = 0; log.sub_step < group.sub_steps; ++log.sub_step)
       impl_->dynamics.advance(group.bodies, impl_->ground.get(), settings.time_step / group.sub_steps, contacts, log,
                               impl_->work);
@@ -200,7 +203,6 @@ StepWork& StepWork::operator+=(const StepWork& other) {
   sub_steps += other.sub_steps;
   body_sub_steps += other.body_sub_steps;
   contacts += other.contacts;
-  limited_speeds += other.limited_speeds;
   search_seconds += other.search_seconds;
   solve_seconds += other.solve_seconds;
   return *this;

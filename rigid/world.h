@@ -72,7 +72,6 @@ struct StepWork {
   long sub_steps = 0;       ///< of all groups of bodies that can meet
   long body_sub_steps = 0;  ///< bodies times sub-steps
   long contacts = 0;        ///< contact points given to the solver
-  long limited_speeds = 0;  ///< bodies that the solver would have thrown off faster than any collision can
   double search_seconds = 0, solve_seconds = 0;
   StepWork& operator+=(const StepWork& other);
 };

@@ -118,7 +118,7 @@ void serialize(Archive& archive, World::Snapshot& s) {
 
 template <class Archive>
 void serialize(Archive& archive, StepWork& w) {
-  archive(w.steps, w.sub_steps, w.body_sub_steps, w.contacts, w.limited_speeds, w.search_seconds, w.solve_seconds);
+  archive(w.steps, w.sub_steps, w.body_sub_steps, w.contacts, w.search_seconds, w.solve_seconds);
 }
 
 template <class Archive>

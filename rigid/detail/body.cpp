@@ -172,6 +172,12 @@ Mat3 world_inertia(const Body& body) {
   return turn * body.inertia * turn.transpose();
 }
 
+Body* find_body(const std::vector<Body*>& bodies, BodyId id) {
+  const auto found =
+      std::lower_bound(bodies.begin(), bodies.end(), id, [](const Body* b, BodyId wanted) { return b->id < wanted; });
+  return found != bodies.end() && (*found)->id == id ? *found : nullptr;
+}
+
 Box bounds(const Body& body) {
   btVector3 low, high;
   body.shape->getAabb(body.object->getWorldTransform(), low, high);

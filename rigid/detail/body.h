@@ -30,6 +30,7 @@ struct Body {
   double stride = 0;            ///< largest motion that a contact search may skip [m]
   std::vector<Box> part_boxes;  ///< of all parts, at the start of the sub-step
   Box box;                      ///< around them
+  int group = -1;               ///< of its step, if it can move and the group has something to do (groups())
   bool asleep = false;          ///< at rest until something wakes it; the solver then takes it for fixed
   double last_step = 0;         ///< length of its last sub-step [s]
   double quiet_time = 0;        ///< for how long it has been slow [s]
@@ -56,6 +57,9 @@ void place(Body& body, const BodyState& state);
 /// Moves the principal axes there.
 void set_place(Body& body, const Vec3& position, const Quat& turn);
 Mat3 world_inertia(const Body& body);
+
+/// Null for the ground and for bodies that are not in the list, which is in order of ids.
+Body* find_body(const std::vector<Body*>& bodies, BodyId id);
 
 /// Box around all parts at the present place.
 Box bounds(const Body& body);

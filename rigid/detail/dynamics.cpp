@@ -144,16 +144,6 @@ double leaving_speed(const Fall& fall, double restitution, double hit_time) {
   return std::max(0.0, leaving + fall.pull * (hit_time - fall.step / 2));
 }
 
-double speed_of(const Body& body) {
-  return std::max(body.object->getLinearVelocity().length(), body.object->getAngularVelocity().length() * body.radius);
-}
-
-double fastest_of(const std::vector<Body*>& bodies) {
-  double speed = 0;
-  for (const Body* body : bodies) speed = std::max(speed, speed_of(*body));
-  return speed;
-}
-
 }  // namespace
 
 Dynamics::Dynamics(const Vec3& gravity) : gravity_(gravity) {
@@ -314,22 +304,6 @@ void Dynamics::move_to_hits(const Step& step) {
   }
 }
 
-// A light body that a heavy one hits leaves with at most twice its speed. Between heavy bodies a crumb can bring the
-// iteration to any speed: what is beyond all reason is cut off and counted.
-int Dynamics::limit_speeds(const Step& step, double fastest) const {
-  constexpr double most_gain = 4;
-  const double most = most_gain * (fastest + gravity_.norm() * step.length);
-  int limited = 0;
-  for (Body* body : step.bodies) {
-    if (!body->is_dynamic() || body->asleep || speed_of(*body) <= most) continue;
-    const double share = most / speed_of(*body);
-    body->object->setLinearVelocity(body->object->getLinearVelocity() * share);
-    body->object->setAngularVelocity(body->object->getAngularVelocity() * share);
-    ++limited;
-  }
-  return limited;
-}
-
 // All awake bodies in one group: islands do not act on each other, so nothing is gained by solving them apart.
 void Dynamics::solve(const Step& step) {
   btAlignedObjectArray<btCollisionObject*> objects;
@@ -366,10 +340,8 @@ void Dynamics::harvest(const Step& step) {
   }
   // Pairs of sleepers were not looked at.
   const auto sleeps = [&](BodyId id) {
-    if (id == ground_id) return true;
-    const auto found = std::lower_bound(step.bodies.begin(), step.bodies.end(), id,
-                                        [](const Body* body, BodyId wanted) { return body->id < wanted; });
-    return found == step.bodies.end() || (*found)->id != id || !(*found)->is_awake();
+    const Body* body = find_body(step.bodies, id);
+    return !body || !body->is_awake();
   };
   for (const ContactMemory& old : step.memory)
     if (sleeps(old.pair.body_a) && sleeps(old.pair.body_b)) next_contacts_.push_back(old);
@@ -398,9 +370,7 @@ void Dynamics::advance(const std::vector<Body*>& bodies, Body* ground, double ti
     keep_first_hits();
     for (const Prepared& p : prepared_) apply(p, step);
     move_to_hits(step);
-    const double fastest = fastest_of(bodies);
     solve(step);
-    work.limited_speeds += limit_speeds(step, fastest);
   }
   work.contacts += static_cast<long>(prepared_.size());
   std::vector<Touch> touching;

@@ -57,7 +57,6 @@ class Dynamics {
   void apply(const Prepared& p, const Step& step);
   void move_to_hits(const Step& step);
   void solve(const Step& step);
-  int limit_speeds(const Step& step, double fastest) const;
   void harvest(const Step& step);
 
   Vec3 gravity_;

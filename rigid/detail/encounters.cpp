@@ -18,8 +18,7 @@ constexpr int most_sub_steps = 512;
 constexpr double turn_per_step = 1;  // [rad]
 constexpr double most_turns = 8;
 
-// Bodies lighter than this share of the heaviest are crumbs: they take the sub-steps that others
-// need.
+// Bodies lighter than this share of the heaviest are crumbs: they take the sub-steps that others need.
 constexpr double crumb_share = 1e-6;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
@@ -147,6 +146,7 @@ std::vector<Group> groups(const std::vector<Body*>& bodies, const Body* ground, 
     for (int i : members[g]) group.bodies.push_back(bodies[at(i)]);
     const bool awake =
         std::any_of(group.bodies.begin(), group.bodies.end(), [](const Body* b) { return b->is_awake(); });
+    for (int i : members[g]) bodies[at(i)]->group = awake && !is_fixed(i) ? static_cast<int>(result.size()) : -1;
     if (awake) result.push_back(std::move(group));
   }
   return result;

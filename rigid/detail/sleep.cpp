@@ -15,13 +15,6 @@ constexpr double resting_depth = 4e-3;
 constexpr double passed_on = 0.5;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// Place in the list; -1 for the ground and for bodies that are gone.
-int place_of(BodyId id, const std::vector<Body*>& bodies) {
-  const auto found =
-      std::lower_bound(bodies.begin(), bodies.end(), id, [](const Body* b, BodyId wanted) { return b->id < wanted; });
-  return found != bodies.end() && (*found)->id == id ? static_cast<int>(found - bodies.begin()) : -1;
-}
-
 }  // namespace
 
 double speed_set(const Body& sleeper, const Body& other, double speed) {
@@ -40,8 +33,7 @@ std::vector<Call> call_neighbours(BodyId id, const std::vector<ContactMemory>& c
 
 bool wake(std::vector<Call> calls, const std::vector<ContactMemory>& contacts, const std::vector<Body*>& bodies) {
   const auto answers = [&](const Call& call) -> Body* {
-    const int place = place_of(call.id, bodies);
-    Body* body = place < 0 ? nullptr : bodies[static_cast<std::size_t>(place)];
+    Body* body = find_body(bodies, call.id);
     return body && body->is_dynamic() && body->asleep && call.speed > body->slow_speed ? body : nullptr;
   };
   std::erase_if(calls, [&](const Call& call) { return !answers(call); });
@@ -65,9 +57,9 @@ bool wake(std::vector<Call> calls, const std::vector<ContactMemory>& contacts, c
     set_asleep(*body, false);
     const auto first = std::lower_bound(neighbours.begin(), neighbours.end(), std::pair(call.id, ground_id));
     for (auto n = first; n != neighbours.end() && n->first == call.id; ++n) {
-      const int place = place_of(n->second, bodies);
-      if (place < 0) continue;
-      calls.push_back({n->second, speed_set(*bodies[static_cast<std::size_t>(place)], *body, passed_on * call.speed)});
+      const Body* neighbour = find_body(bodies, n->second);
+      if (!neighbour) continue;
+      calls.push_back({n->second, speed_set(*neighbour, *body, passed_on * call.speed)});
       std::push_heap(calls.begin(), calls.end(), weaker);
     }
   }

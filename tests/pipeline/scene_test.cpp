@@ -20,6 +20,10 @@ namespace {
 namespace fs = std::filesystem;
 
 // Scenes written by a test, with a catalogue of one small mesh.
+struct BadScene {
+  std::string text, expected;
+};
+
 class SceneTest : public testing::Test {
  protected:
   SceneTest() : folder_(fs::path(testing::TempDir()) / ("sunder_scene_" + std::to_string(getpid()))) {
@@ -49,6 +53,12 @@ class SceneTest : public testing::Test {
       return message.substr(message.find("scene.toml"));
     }
     return "accepted";
+  }
+  void expect_complaints(const std::vector<BadScene>& scenes) const {
+    for (const auto& [text, expected] : scenes) {
+      const std::string message = complaint(text);
+      EXPECT_NE(message.find(expected), std::string::npos) << text << "gave: " << message;
+    }
   }
 
   fs::path folder_;
@@ -124,8 +134,7 @@ TEST_F(SceneTest, RefusesThresholdsThatMakeNoSense) {
             "scene.toml:7: [fracture]: maximum_fragments: expected an integer from 0 to 2147483647, found -1");
 }
 
-TEST_F(SceneTest, ReadsEverySection) {
-  const Scene scene = load(R"(
+constexpr const char* kEverySection = R"(
 [scene]
 duration = 1
 frame_rate = 30.0
@@ -175,7 +184,10 @@ debris_size = 0.003
 [output]
 obj = false
 glb = false
-)");
+)";
+
+TEST_F(SceneTest, ReadsEverySection) {
+  const Scene scene = load(kEverySection);
   EXPECT_EQ(scene.duration, 1);
   EXPECT_EQ(scene.frame_rate, 30);
   EXPECT_EQ(scene.start_frame, 1001);
@@ -265,11 +277,7 @@ TEST_F(SceneTest, NamesLineAndRemedyOfMistakesInABody) {
   }
 }
 
-struct BadScene {
-  std::string text, expected;
-};
-
-TEST_F(SceneTest, NamesLineAndRemedyOfOtherMistakes) {
+TEST_F(SceneTest, NamesLineAndRemedyOfMistakesInSceneAndBodies) {
   const std::vector<BadScene> scenes = {
       {"", "scene.toml:1: the scene has no body"},
       {"[scene]\nduration = 0\n" + kBall, "scene.toml:2: [scene]: duration: expected a number above 0, found 0"},
@@ -315,6 +323,12 @@ TEST_F(SceneTest, NamesLineAndRemedyOfOtherMistakes) {
       {"[[body]]\nname = 'a'\nmesh = 'sphere'\nheight = 1\nmaterial = 'steel'\nmotion = 'fixed'\nvelocity = [1, 0, "
        "0]\n",
        "scene.toml:6: body 'a': motion: a fixed body"},
+  };
+  expect_complaints(scenes);
+}
+
+TEST_F(SceneTest, NamesLineAndRemedyOfMistakesInOtherSections) {
+  const std::vector<BadScene> scenes = {
       {"[ground]\nmaterial = 'lava'\n" + kBall, "scene.toml:2: [ground]: material: unknown material 'lava'"},
       {"[fracture]\nminimum_volume = 2\n" + kBall,
        "scene.toml:2: [fracture]: minimum_volume: expected a number from 0 to 1"},
@@ -345,10 +359,7 @@ TEST_F(SceneTest, NamesLineAndRemedyOfOtherMistakes) {
       {"[scene]\nduration = = 2\n", "scene.toml:2: not valid TOML"},
       {"[scene]\nduration = 1\nduration = 2\n" + kBall, "scene.toml:3: not valid TOML"},
   };
-  for (const auto& [text, expected] : scenes) {
-    const std::string message = complaint(text);
-    EXPECT_NE(message.find(expected), std::string::npos) << text << "gave: " << message;
-  }
+  expect_complaints(scenes);
 }
 
 TEST_F(SceneTest, MissingFileIsAUsageError) {
