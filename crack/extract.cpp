@@ -207,6 +207,7 @@ Extraction extract(const DamageField& field, const Box& domain, const Settings& 
   result.faces = crack_faces(raster, sites, medial.cells, settings.node_damage);
   result.boundary = std::move(medial.boundary);
   result.vertices = std::move(medial.cells.vertices);
+  for (const Vec3& x : result.vertices) result.damage_time.push_back(damage_time_at(raster, x));
   for (const Site& site : sites)
     if (site.is_border) result.anchors.push_back({site.lattice, site.node, site.position, site.piece});
   progress.report("extract", 1);

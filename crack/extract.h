@@ -60,6 +60,7 @@ struct Extraction {
   std::vector<int> region;            ///< per point of the field
   geometry::RegionBoundary boundary;  ///< what geometry::cut takes; closed around every region
   std::vector<Vec3> vertices;         ///< of `faces`; those of `boundary` are the same
+  std::vector<double> damage_time;    ///< per vertex, mean of the damage beside it [s]; -1: unknown
   std::vector<CrackFace> faces;       ///< for looking and for later solves; face i is boundary.faces[i] unless partial
   std::vector<Anchor> anchors;        ///< by which a later extraction of the same body keeps these faces
   double node_spacing = 0;            ///< that was used [m]

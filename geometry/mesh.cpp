@@ -11,6 +11,11 @@ Box bounds(const TriangleMesh& mesh) {
   return box;
 }
 
+double face_area(const TriangleMesh& mesh, std::size_t face) {
+  const auto corner = [&](std::size_t k) { return mesh.vertices[static_cast<std::size_t>(mesh.faces[face][k])]; };
+  return (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm() / 2;
+}
+
 TriangleMesh transformed(const TriangleMesh& mesh, const Mat3& linear, const Vec3& offset) {
   TriangleMesh result = mesh;
   for (Vec3& vertex : result.vertices) vertex = (linear * vertex + offset).eval();

@@ -18,6 +18,9 @@ struct TriangleMesh {
 /// Bounding box of all vertices (also of those that no face uses).
 Box bounds(const TriangleMesh& mesh);
 
+/// Of one face [m^2].
+double face_area(const TriangleMesh& mesh, std::size_t face);
+
 /// x -> linear * x + offset. A reflection turns the faces so that they keep pointing outward.
 TriangleMesh transformed(const TriangleMesh& mesh, const Mat3& linear, const Vec3& offset);
 

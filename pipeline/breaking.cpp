@@ -15,11 +15,6 @@ namespace {
 
 /// Fragments are resolved by at least this share of a whole body's particles.
 constexpr double fragment_particle_share = 0.25;
-std::string fragment_name(const std::string& body, int number) {
-  char digits[16];
-  std::snprintf(digits, sizeof digits, "_%04d", number);
-  return body + digits;
-}
 
 /// Each crack has two faces [m^2].
 double crack_area(const FractureOutcome& outcome) {
@@ -27,11 +22,7 @@ double crack_area(const FractureOutcome& outcome) {
   for (const BrokenPiece& piece : outcome.pieces) {
     const geometry::TriangleMesh& mesh = piece.fragment.mesh;
     for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-      if (piece.fragment.source_face[f] >= 0) continue;
-      const auto corner = [&](int k) {
-        return mesh.vertices[static_cast<std::size_t>(mesh.faces[f][static_cast<std::size_t>(k)])];
-      };
-      area += (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm() / 4;
+      if (piece.fragment.source_face[f] < 0) area += geometry::face_area(mesh, f) / 2;
     }
   }
   return area;
@@ -48,7 +39,7 @@ RigidPart rotated(const RigidPart& part, const Quat& q) {
 FractureInput Simulation::fracture_input(const Hit& hit, std::size_t number,
                                          std::vector<rigid::BodyId>& partner_ids) const {
   const Live& live = state_.live.at(hit.body);
-  const Piece& piece = piece_of(live);
+  const output::Piece& piece = piece_of(live);
   const Pose pose = world_.state(hit.body).pose;
   const Quat to_body = pose.orientation.conjugate();
   FractureInput input;
@@ -128,28 +119,22 @@ void Simulation::account(const FractureRecord& record, const FractureOutcome& ou
     state_.report.notes.push_back(record.body + ": " + trouble);
 }
 
-std::vector<Piece> Simulation::pieces_of(const Live& parent, const FractureOutcome& outcome,
-                                         std::vector<RigidPart>& parts) const {
-  const Piece& old = piece_of(parent);
+std::vector<output::Piece> Simulation::pieces_of(const Live& parent, const FractureOutcome& outcome,
+                                                 std::vector<RigidPart>& parts) const {
+  const output::Piece& old = piece_of(parent);
   const std::string& body = origin_of(parent).name;
   const auto known = std::count_if(state_.sequence.pieces.begin(), state_.sequence.pieces.end(),
-                                   [&](const Piece& p) { return p.body == body; });
-  std::vector<Piece> pieces;
-  for (const BrokenPiece& broken : outcome.pieces) {
-    Piece piece;
-    piece.id = static_cast<int>(state_.sequence.pieces.size() + pieces.size());
-    piece.name = fragment_name(body, static_cast<int>(known) + static_cast<int>(pieces.size()));
-    piece.body = body;
-    piece.parent = old.id;
-    piece.generation = old.generation + 1;
+                                   [&](const output::Piece& p) { return p.body == body; });
+  std::vector<output::Piece> pieces(outcome.pieces.size());
+  parts.resize(pieces.size());
+  tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t k) {
+    output::Piece& piece = pieces[k];
+    piece = detail::fragment_piece(old, outcome.pieces[k].fragment, outcome.cracked);
+    piece.id = static_cast<int>(state_.sequence.pieces.size() + k);
+    piece.name = output::fragment_name(body, static_cast<int>(known) + static_cast<int>(k));
     piece.birth_time = world_.time();
-    piece.material = old.material;
-    piece.mesh = broken.fragment.mesh;
-    for (int source : broken.fragment.source_face)
-      piece.inside.push_back(source < 0 || old.inside[static_cast<std::size_t>(source)]);
-    parts.push_back(detail::centred(piece.mesh, origin_of(parent).material.density, piece));
-    pieces.push_back(std::move(piece));
-  }
+    parts[k] = detail::centred(piece, origin_of(parent).material.density);
+  });
   return pieces;
 }
 
@@ -267,7 +252,7 @@ void Simulation::hand_over(const Hit& hit, const FractureOutcome& outcome, const
   const rigid::BodyState state = world_.state(hit.body);
   const bool free = motion_of(parent) == rigid::Motion::dynamic;
   std::vector<RigidPart> body_parts, parts;
-  std::vector<Piece> pieces = pieces_of(parent, outcome, body_parts);
+  std::vector<output::Piece> pieces = pieces_of(parent, outcome, body_parts);
   for (const RigidPart& part : body_parts) parts.push_back(rotated(part, state.pose.orientation));
 
   record.kinetic_before = energy_of(hit.body) + energy_of(partners);
@@ -292,6 +277,10 @@ void Simulation::hand_over(const Hit& hit, const FractureOutcome& outcome, const
   remove(hit.body);
   ++state_.fracture_count[static_cast<std::size_t>(parent.origin)];
   const std::vector<rigid::BodyId> ids = add_pieces(parent, outcome, pieces, body_parts, state.pose, twists);
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    pieces[k].birth = twists[k];
+    pieces[k].birth_energy = kinetic_energy({parts[k]}, {twists[k]});
+  }
   record.fragments = static_cast<int>(pieces.size());
   record.kinetic_after = kinetic_energy(parts, twists) + energy_of(partners);
   all = partners;
@@ -310,8 +299,9 @@ void Simulation::remove(rigid::BodyId id) {
 
 /// Fragments of one fracture touch along their cracks: they are one family, whose first overlaps push nothing apart.
 std::vector<rigid::BodyId> Simulation::add_pieces(const Live& parent, const FractureOutcome& outcome,
-                                                  const std::vector<Piece>& pieces, const std::vector<RigidPart>& parts,
-                                                  const Pose& pose, const std::vector<Twist>& twists) {
+                                                  const std::vector<output::Piece>& pieces,
+                                                  const std::vector<RigidPart>& parts, const Pose& pose,
+                                                  const std::vector<Twist>& twists) {
   std::vector<Live> lives;
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     const RigidPart& part = parts[k];

@@ -6,8 +6,8 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "output/atomic_file.h"
 #include "pipeline/detail/archive.h"
-#include "pipeline/sequence.h"
 #include "sunder_version.h"
 
 namespace sunder::pipeline {
@@ -88,7 +88,7 @@ void write_checkpoint(const fs::path& file, const std::string& scene_fingerprint
   cereal::BinaryOutputArchive header(out);
   header(Header{build, scene_fingerprint, hash_of(state.view())});
   out << state.view();
-  write_atomically(file, out.view());
+  output::write_atomically(file, out.view());
 }
 
 std::optional<Checkpoint> read_checkpoint(const fs::path& file, const std::string& scene_fingerprint) {

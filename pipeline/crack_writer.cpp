@@ -3,7 +3,7 @@
 #include <array>
 #include <sstream>
 
-#include "pipeline/sequence.h"
+#include "output/atomic_file.h"
 
 namespace sunder::pipeline {
 namespace {
@@ -41,7 +41,7 @@ void write_crack_surface(const crack::Extraction& extraction, const std::filesys
       << "property double damage_time\nproperty int region_a\nproperty int region_b\nproperty uchar red\n"
       << "property uchar green\nproperty uchar blue\nend_header\n"
       << vertices.str() << faces.str();
-  write_atomically(file, out.str());
+  output::write_atomically(file, out.str());
 }
 
 }  // namespace sunder::pipeline

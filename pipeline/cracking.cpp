@@ -48,7 +48,7 @@ class Cracking {
   bool roughen(const crack::DamageTimes& times, int attempt) {
     const Stopwatch watch(result_.extract_seconds);
     first_gap_ = result_.boundary.region_count;
-    result_.damage_time.clear();
+    result_.damage_time = result_.extraction.damage_time;
     result_.detailed_vertices.count = result_.detail_limited = result_.hairline_faces.count = 0;
     if (with_optional_effects && !choice_.detail.empty() && result_.boundary.region_count > 1)
       add_detail(times, attempt);
@@ -93,6 +93,7 @@ class Cracking {
     const double width = choice_.hairline_width / std::pow(narrowing, attempt);
     const crack::Hairlines lines = crack::add_hairlines(result_.extraction, width, result_.boundary);
     first_gap_ = lines.first_gap;
+    result_.damage_time.resize(result_.boundary.vertices.size(), -1);
     result_.hairline_faces.count = lines.faces;
   }
 

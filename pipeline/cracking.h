@@ -29,7 +29,7 @@ struct Cracked {
   crack::Extraction extraction;
   geometry::RegionBoundary boundary;  ///< what was cut along: with detail and gaps
   geometry::CutResult cut;            ///< without the gaps of hairlines; no fragments: nothing separated
-  std::vector<double> damage_time;    ///< per vertex of `boundary` [s], -1: unknown; empty without detail
+  std::vector<double> damage_time;    ///< per vertex of `boundary` [s], -1: unknown; empty: no times
   Effort detailed_vertices;           ///< vertices of detailed faces
   long detail_limited = 0;            ///< those of them that are lower than asked
   Effort hairline_faces;              ///< partial crack faces that are shown as gaps

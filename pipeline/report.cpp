@@ -12,20 +12,20 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-bool is_fragment(const Piece& piece) { return piece.parent >= 0; }
+bool is_fragment(const output::Piece& piece) { return piece.parent >= 0; }
 
 /// Fragments that exist at the end of the run.
-std::vector<const Piece*> living_fragments(const Sequence& sequence) {
-  std::vector<const Piece*> living;
-  for (const Piece& p : sequence.pieces)
+std::vector<const output::Piece*> living_fragments(const output::Sequence& sequence) {
+  std::vector<const output::Piece*> living;
+  for (const output::Piece& p : sequence.pieces)
     if (is_fragment(p) && std::isinf(p.death_time)) living.push_back(&p);
   return living;
 }
 
-Json fragments_json(const Report& report, const Sequence& sequence) {
+Json fragments_json(const Report& report, const output::Sequence& sequence) {
   Json list = Json::array();
   int closed = 0;
-  for (const Piece* p : living_fragments(sequence)) {
+  for (const output::Piece* p : living_fragments(sequence)) {
     closed += p->closed;
     list.push_back({{"id", p->id},
                     {"name", p->name},
@@ -174,7 +174,7 @@ ExtractRecord record_of(const crack::Extraction& extraction) {
   return record;
 }
 
-std::string to_json(const Report& report, const Sequence& sequence) {
+std::string to_json(const Report& report, const output::Sequence& sequence) {
   Json fractures = Json::array(), repairs = Json::array();
   double solve_seconds = 0;
   for (const FractureRecord& f : report.fractures) {
@@ -231,9 +231,9 @@ std::string to_json(const Report& report, const Sequence& sequence) {
   return json.dump(2) + "\n";
 }
 
-std::string summary(const Report& report, const Sequence& sequence) {
+std::string summary(const Report& report, const output::Sequence& sequence) {
   const auto living = living_fragments(sequence);
-  const auto closed = std::count_if(living.begin(), living.end(), [](const Piece* p) { return p->closed; });
+  const auto closed = std::count_if(living.begin(), living.end(), [](const output::Piece* p) { return p->closed; });
   const auto broke =
       std::count_if(report.fractures.begin(), report.fractures.end(), [](const auto& f) { return f.fragments > 0; });
   char line[256];

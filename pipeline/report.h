@@ -5,9 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "output/sequence.h"
+#include "rigid/world.h"
 #include "pipeline/effects.h"
 #include "pipeline/fracture.h"
-#include "pipeline/sequence.h"
 
 namespace sunder::pipeline {
 
@@ -86,9 +87,9 @@ struct Report {
 };
 
 /// The report as JSON text; `sequence` supplies fragments and frames. docs/report.md explains every key.
-std::string to_json(const Report& report, const Sequence& sequence);
+std::string to_json(const Report& report, const output::Sequence& sequence);
 
 /// A few lines for the terminal.
-std::string summary(const Report& report, const Sequence& sequence);
+std::string summary(const Report& report, const output::Sequence& sequence);
 
 }  // namespace sunder::pipeline

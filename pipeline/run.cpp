@@ -8,6 +8,8 @@
 #include <sys/resource.h>
 
 #include "core/stopwatch.h"
+#include "output/atomic_file.h"
+#include "output/writers.h"
 #include "pipeline/checkpoint.h"
 #include "pipeline/quality.h"
 #include "pipeline/simulation.h"
@@ -27,7 +29,7 @@ double peak_memory_mb() {
 }
 
 /// Frames of an earlier, longer run would play on after the end of this one.
-void remove_stale_frames(const std::filesystem::path& folder, const Sequence& sequence) {
+void remove_stale_frames(const std::filesystem::path& folder, const output::Sequence& sequence) {
   const int last = sequence.start_frame + static_cast<int>(sequence.frames.size()) - 1;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string file = entry.path().filename().string(), head = sequence.name + ".";
@@ -91,7 +93,7 @@ class Run {
     simulation_->record_frame();
     if (!scene_.outputs.obj) return;
     const Stopwatch watch(simulation_->report().seconds.write);
-    write_obj_frame(simulation_->sequence(), simulation_->sequence().frames.size() - 1, options_.out);
+    output::write_obj_frame(simulation_->sequence(), simulation_->sequence().frames.size() - 1, options_.out);
   }
 
   void save() {
@@ -117,8 +119,8 @@ bool is_complete(const Scene& scene, const std::filesystem::path& out) {
 }
 
 RunResult run(const Scene& scene, const RunOptions& options, Progress& progress) {
-  create_folder(options.out);
-  remove_abandoned(options.out);
+  output::create_folder(options.out);
+  output::remove_abandoned(options.out);
   double total = 0;
   RunResult result;
   {
@@ -133,7 +135,7 @@ RunResult run(const Scene& scene, const RunOptions& options, Progress& progress)
     result.sequence = simulation.take_sequence();
     if (scene.outputs.obj && complete) remove_stale_frames(options.out, result.sequence);
     const Stopwatch writing(result.report.seconds.write);
-    if (scene.outputs.glb) write_glb(result.sequence, options.out / "fragments.glb");
+    if (scene.outputs.glb) output::write_glb(result.sequence, options.out / "fragments.glb");
     if (complete) run.remove_checkpoint();
   }
   Report& report = result.report;
@@ -143,7 +145,7 @@ RunResult run(const Scene& scene, const RunOptions& options, Progress& progress)
   report.threads = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
   report.seconds.total += total;
   report.peak_memory_mb = peak_memory_mb();
-  write_atomically(options.out / "report.json", to_json(report, result.sequence));
+  output::write_atomically(options.out / "report.json", to_json(report, result.sequence));
   return result;
 }
 

@@ -5,9 +5,9 @@
 #include <string>
 
 #include "core/progress.h"
+#include "output/sequence.h"
 #include "pipeline/report.h"
 #include "pipeline/scene.h"
-#include "pipeline/sequence.h"
 
 namespace sunder::pipeline {
 
@@ -19,7 +19,7 @@ struct RunOptions {
 };
 
 struct RunResult {
-  Sequence sequence;  ///< empty when the run was complete already
+  output::Sequence sequence;  ///< empty when the run was complete already
   Report report;
 };
 

@@ -47,7 +47,7 @@ int steps_in_frame(const Scene& scene) {
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
-double extent_of(const Piece& piece) { return geometry::bounds(piece.mesh).sizes().maxCoeff(); }
+double extent_of(const output::Piece& piece) { return geometry::bounds(piece.mesh).sizes().maxCoeff(); }
 
 }  // namespace
 
@@ -96,13 +96,11 @@ void Simulation::plan_effects_of_bodies() {
 RigidPart Simulation::make_piece(const SceneBody& body) {
   BodyMesh source = body_mesh(body);
   if (!source.repairs.empty()) state_.report.repairs.push_back({body.name, source.repairs});
-  Piece piece;
+  output::Piece piece = detail::whole_piece(body.name, body.material.name, std::move(source.mesh), {});
   piece.id = static_cast<int>(state_.sequence.pieces.size());
-  piece.name = piece.body = body.name;
-  piece.material = body.material.name;
-  piece.mesh = std::move(source.mesh);
-  const RigidPart part = detail::centred(piece.mesh, body.material.density, piece);
-  piece.inside.assign(piece.mesh.faces.size(), false);
+  const RigidPart part = detail::centred(piece, body.material.density);
+  piece.birth = {body.velocity, body.angular_velocity};
+  piece.birth_energy = kinetic_energy({part}, {piece.birth});
   state_.original_volume[at(piece.id)] = piece.volume;
   state_.sequence.pieces.push_back(std::move(piece));
   return part;
@@ -122,11 +120,11 @@ void Simulation::place(int index, const RigidPart& part, Hulls hulls) {
 }
 
 /// Empty when the piece is too thin for a hull.
-Simulation::Hulls Simulation::hulls_of(const Piece& piece, SizeClass size) {
+Simulation::Hulls Simulation::hulls_of(const output::Piece& piece, SizeClass size) {
   return geometry::convex_parts(piece.mesh, collision_detail(size)).hulls;
 }
 
-rigid::BodyId Simulation::add_body(const Piece& piece, const Live& live, Hulls hulls, const Pose& pose,
+rigid::BodyId Simulation::add_body(const output::Piece& piece, const Live& live, Hulls hulls, const Pose& pose,
                                    const Twist& twist, int family) {
   rigid::BodySetup setup;
   setup.hulls = std::move(hulls);
@@ -151,7 +149,7 @@ rigid::BodyId Simulation::add_body(const Piece& piece, const Live& live, Hulls h
 
 void Simulation::require_no_overlap() const {
   for (const rigid::World::Overlap& o : world_.overlaps()) {
-    const Piece& a = piece_of(state_.live.at(o.body_a));
+    const output::Piece& a = piece_of(state_.live.at(o.body_a));
     const bool on_ground = o.body_b == rigid::ground_id;
     const double size =
         on_ground ? extent_of(a) : std::min(extent_of(a), extent_of(piece_of(state_.live.at(o.body_b))));
@@ -167,7 +165,7 @@ void Simulation::require_no_overlap() const {
 }
 
 bool Simulation::may_break(const Live& live, double now) const {
-  const Piece& piece = piece_of(live);
+  const output::Piece& piece = piece_of(live);
   const std::size_t origin = static_cast<std::size_t>(live.origin);
   if (!origin_of(live).breakable || !origin_of(live).material.breakable) return false;
   if (piece.generation > 0 && !(with_optional_effects && effects_.runs(Effect::secondary_fracture))) return false;
@@ -179,7 +177,7 @@ bool Simulation::may_break(const Live& live, double now) const {
   return live.last_solve < now && now - live.last_solve >= delay;
 }
 
-const Piece& Simulation::piece_of(const Live& live) const {
+const output::Piece& Simulation::piece_of(const Live& live) const {
   return state_.sequence.pieces[static_cast<std::size_t>(live.piece)];
 }
 
@@ -216,7 +214,7 @@ double Simulation::energy_of(rigid::BodyId id) const {
 double Simulation::minimum_impulse(const Live& live, double partner_mass) const {
   if (origin_of(live).minimum_impulse) return *origin_of(live).minimum_impulse;
   if (scene_.fracture.minimum_impulse) return *scene_.fracture.minimum_impulse;
-  const Piece& piece = piece_of(live);
+  const output::Piece& piece = piece_of(live);
   const double energy = origin_of(live).material.fracture_energy * std::pow(piece.volume, 2.0 / 3);
   const double m = mpm::reduced_mass(piece.mass, partner_mass);
   return std::sqrt(2 * m * energy);
@@ -316,7 +314,7 @@ void Simulation::step(Progress& progress) {
   }
 }
 
-void Simulation::note_speed(const Piece& piece, double speed) {
+void Simulation::note_speed(const output::Piece& piece, double speed) {
   MotionRecord& motion = state_.report.motion;
   if (piece.generation == 0 && world_.time() == 0) motion.fastest_start = std::max(motion.fastest_start, speed);
   if (piece.generation == 0 || speed <= motion.fastest_fragment) return;
@@ -326,15 +324,15 @@ void Simulation::note_speed(const Piece& piece, double speed) {
 }
 
 void Simulation::record_frame() {
-  Frame frame;
+  output::Frame frame;
   frame.time = world_.time();
   for (const auto& [id, live] : state_.live) {
     const rigid::BodyState body = world_.state(id);
-    frame.poses.push_back({live.piece, body.pose});
+    frame.poses.push_back({live.piece, body.pose, body.twist});
     note_speed(piece_of(live), body.twist.linear.norm());
   }
   std::sort(frame.poses.begin(), frame.poses.end(),
-            [](const PiecePose& a, const PiecePose& b) { return a.piece < b.piece; });
+            [](const output::PiecePose& a, const output::PiecePose& b) { return a.piece < b.piece; });
   state_.sequence.frames.push_back(std::move(frame));
 }
 

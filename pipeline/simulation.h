@@ -4,13 +4,13 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "output/sequence.h"
 #include "pipeline/fracture.h"
 #include "pipeline/handover.h"
 #include "pipeline/lifecycle.h"
 #include "pipeline/report.h"
 #include "pipeline/run.h"
 #include "pipeline/scene.h"
-#include "pipeline/sequence.h"
 #include "rigid/world.h"
 
 namespace sunder::pipeline {
@@ -27,7 +27,7 @@ struct Live {
 
 /// What a simulation has made of its scene so far, beside the world: together they are all of its state.
 struct SimulationState {
-  Sequence sequence;
+  output::Sequence sequence;
   Report report;
   std::map<rigid::BodyId, Live> live;
   std::vector<double> original_volume;  ///< by scene body
@@ -50,8 +50,8 @@ class Simulation {
   /// Adds the present poses to the sequence.
   void record_frame();
 
-  const Sequence& sequence() const { return state_.sequence; }
-  Sequence take_sequence() { return std::move(state_.sequence); }
+  const output::Sequence& sequence() const { return state_.sequence; }
+  output::Sequence take_sequence() { return std::move(state_.sequence); }
   Report& report() { return state_.report; }
   const EffectPlan& effects() const { return effects_; }
   int steps_per_frame() const { return steps_per_frame_; }
@@ -67,15 +67,15 @@ class Simulation {
     double impulse = 0, severity = 0;
   };
 
-  static Hulls hulls_of(const Piece& piece, SizeClass size);
+  static Hulls hulls_of(const output::Piece& piece, SizeClass size);
   RigidPart make_piece(const SceneBody& body);
   void place(int index, const RigidPart& part, Hulls hulls);
   void plan_effects_of_bodies();
-  void note_speed(const Piece& piece, double speed);
+  void note_speed(const output::Piece& piece, double speed);
   std::vector<rigid::Impact> step_world();
   void require_no_overlap() const;
-  rigid::BodyId add_body(const Piece& piece, const Live& live, Hulls hulls, const Pose& pose, const Twist& twist,
-                         int family);
+  rigid::BodyId add_body(const output::Piece& piece, const Live& live, Hulls hulls, const Pose& pose,
+                         const Twist& twist, int family);
   std::vector<Hit> breaking_hits(const std::vector<rigid::Impact>& impacts, double now) const;
   bool may_break(const Live& live, double now) const;
   rigid::Motion motion_of(const Live& live) const;
@@ -84,7 +84,7 @@ class Simulation {
   double energy_of(rigid::BodyId id) const;
   double energy_of(const std::vector<rigid::BodyId>& ids) const;
   double minimum_impulse(const Live& live, double partner_mass) const;
-  const Piece& piece_of(const Live& live) const;
+  const output::Piece& piece_of(const Live& live) const;
   const SceneBody& origin_of(const Live& live) const { return scene_.bodies[static_cast<std::size_t>(live.origin)]; }
   double share_of(const Live& live) const;
   SizeClass size_of(const Live& live) const;
@@ -94,7 +94,8 @@ class Simulation {
   void settle(const Hit& hit, const FractureInput& input, const FractureOutcome& outcome,
               const std::vector<rigid::BodyId>& partners);
   void account(const FractureRecord& record, const FractureOutcome& outcome);
-  std::vector<Piece> pieces_of(const Live& parent, const FractureOutcome& outcome, std::vector<RigidPart>& parts) const;
+  std::vector<output::Piece> pieces_of(const Live& parent, const FractureOutcome& outcome,
+                                       std::vector<RigidPart>& parts) const;
   std::vector<Push> pushes_of(const Hit& hit, const FractureOutcome& outcome,
                               const std::vector<rigid::BodyId>& partners);
   void meet_partners(const Hit& hit, const std::vector<Push>& pushes);
@@ -104,7 +105,7 @@ class Simulation {
                                const rigid::BodyState& state, const Momentum& delivered) const;
   void remove(rigid::BodyId id);
   std::vector<rigid::BodyId> add_pieces(const Live& parent, const FractureOutcome& outcome,
-                                        const std::vector<Piece>& pieces, const std::vector<RigidPart>& parts,
+                                        const std::vector<output::Piece>& pieces, const std::vector<RigidPart>& parts,
                                         const Pose& pose, const std::vector<Twist>& twists);
   void hand_over(const Hit& hit, const FractureOutcome& outcome, const std::vector<rigid::BodyId>& partners,
                  FractureRecord& record);

@@ -12,6 +12,8 @@
 #include "geometry/load_points.h"
 #include "geometry/mass_properties.h"
 #include "geometry/sample.h"
+#include "output/atomic_file.h"
+#include "output/writers.h"
 #include "pipeline/crack_writer.h"
 #include "pipeline/detail/mesh_catalogue.h"
 #include "pipeline/detail/piece_mesh.h"
@@ -50,35 +52,22 @@ Material find_material(const std::string& name) {
 }
 
 /// The body, and its fragments when there are any.
-Sequence still_sequence(const SceneBody& body, const geometry::TriangleMesh& mesh,
-                        const std::vector<geometry::Fragment>& fragments, double density) {
-  Sequence sequence;
+output::Sequence still_sequence(const SceneBody& body, const BodyMesh& source, const Cracked& cracked, double density) {
+  output::Sequence sequence;
   sequence.name = body.name;
   sequence.frames.resize(1);
-  const auto add = [&](Piece piece) {
-    geometry::TriangleMesh centred = piece.mesh;
-    detail::centred(centred, density, piece);
+  const auto add = [&](output::Piece piece) {
+    detail::measured(piece, density);
     piece.id = static_cast<int>(sequence.pieces.size());
-    piece.body = body.name;
-    piece.material = body.material.name;
-    if (piece.parent >= 0 || fragments.empty()) sequence.frames[0].poses.push_back({piece.id, Pose()});
+    if (piece.parent >= 0 || cracked.cut.fragments.empty()) sequence.frames[0].poses.push_back({piece.id, {}, {}});
     sequence.pieces.push_back(std::move(piece));
   };
-  Piece whole;
-  whole.name = body.name;
-  whole.mesh = mesh;
-  whole.inside.assign(mesh.faces.size(), false);
-  if (!fragments.empty()) whole.death_time = 0;
-  add(std::move(whole));
-  for (const geometry::Fragment& fragment : fragments) {
-    char number[16];
-    std::snprintf(number, sizeof number, "_%04zu", sequence.pieces.size() - 1);
-    Piece piece;
-    piece.name = body.name + number;
-    piece.parent = 0;
-    piece.generation = 1;
-    piece.mesh = fragment.mesh;
-    for (const int source : fragment.source_face) piece.inside.push_back(source < 0);
+  const output::Piece whole = detail::whole_piece(body.name, body.material.name, source.mesh, {});
+  add(whole);
+  if (!cracked.cut.fragments.empty()) sequence.pieces[0].death_time = 0;
+  for (const geometry::Fragment& fragment : cracked.cut.fragments) {
+    output::Piece piece = detail::fragment_piece(whole, fragment, cracked);
+    piece.name = output::fragment_name(body.name, static_cast<int>(sequence.pieces.size()) - 1);
     add(std::move(piece));
   }
   return sequence;
@@ -90,16 +79,16 @@ void remove_stale_pieces(const std::filesystem::path& folder) {
     if (entry.path().extension() == ".obj") std::filesystem::remove(entry.path());
 }
 
-void write_pieces(const Sequence& sequence, const std::filesystem::path& out, double& seconds) {
+void write_pieces(const output::Sequence& sequence, const std::filesystem::path& out, double& seconds) {
   const Stopwatch watch(seconds);
   const std::filesystem::path folder = out / "fragments";
-  create_folder(folder);
+  output::create_folder(folder);
   remove_stale_pieces(folder);
-  for (const PiecePose& pose : sequence.frames[0].poses) {
-    const Piece& piece = sequence.pieces[static_cast<std::size_t>(pose.piece)];
-    write_obj_piece(piece, folder / (piece.name + ".obj"));
+  for (const output::PiecePose& pose : sequence.frames[0].poses) {
+    const output::Piece& piece = sequence.pieces[static_cast<std::size_t>(pose.piece)];
+    output::write_obj_piece(piece, folder / (piece.name + ".obj"));
   }
-  write_glb(sequence, out / "fragments.glb");
+  output::write_glb(sequence, out / "fragments.glb");
 }
 
 Report report_of(const StillOptions& options, const std::string& name) {
@@ -111,7 +100,7 @@ Report report_of(const StillOptions& options, const std::string& name) {
 
 void finish(StillResult& result, const std::filesystem::path& out, double total) {
   result.report.seconds.total = total;
-  write_atomically(out / "report.json", to_json(result.report, result.sequence));
+  output::write_atomically(out / "report.json", to_json(result.report, result.sequence));
 }
 
 /// Random points in the solid, by drawing from a fine lattice.
@@ -216,9 +205,9 @@ void add_fallbacks(Report& report, const Fallbacks& fallbacks) {
   for (const auto& [name, count] : fallbacks) report.fallbacks[name] += count;
 }
 
-/// The pieces of an impact, with the record of its solve.
-std::vector<geometry::Fragment> hit(const FractureOptions& options, const geometry::TriangleMesh& mesh,
-                                    const SceneBody& body, Report& report, Progress& progress) {
+/// What an impact does, with the record of its solve.
+Cracked hit(const FractureOptions& options, const geometry::TriangleMesh& mesh, const SceneBody& body, Report& report,
+            Progress& progress) {
   const Asked asked(options, body, options.quality, geometry::bounds(mesh));
   const FractureInput input = as_asked(fracture_input(options, mesh, body.material, report), asked.scene, asked.plan);
   FractureOutcome outcome = fracture(input, progress);
@@ -241,11 +230,11 @@ std::vector<geometry::Fragment> hit(const FractureOptions& options, const geomet
   report.extract->points = record.particles;
   report.extract->point_spacing = outcome.own->samples.spacing;
   write_crack_surface(outcome.cracked.extraction, options.out / "cracks.ply");
-  return std::move(outcome.cracked.cut.fragments);
+  return std::move(outcome.cracked);
 }
 
-std::vector<geometry::Fragment> shatter(const FractureOptions& options, const geometry::TriangleMesh& mesh,
-                                        const SceneBody& body, Report& report, Progress& progress) {
+Cracked shatter(const FractureOptions& options, const geometry::TriangleMesh& mesh, const SceneBody& body,
+                Report& report, Progress& progress) {
   const std::vector<Vec3> sites = random_points(mesh, options.cells, options.seed, progress);
   const geometry::RegionBoundary cells = crack::voronoi_cells(sites, geometry::bounds(mesh), options.seed, progress);
   const Asked asked(options, body, options.quality, geometry::bounds(mesh));
@@ -256,7 +245,7 @@ std::vector<geometry::Fragment> shatter(const FractureOptions& options, const ge
   report.cut_volume_error = cracked.cut.volume_error;
   report.notes = cracked.troubles;
   add_fallbacks(report, cracked.fallbacks);
-  return std::move(cracked.cut.fragments);
+  return cracked;
 }
 
 /// Mean distance of points, from how many lie in boxes that hold a few each. Half empty boxes at the border make it a
@@ -308,13 +297,12 @@ StillResult fracture_mesh(const FractureOptions& options, Progress& progress) {
     if (options.cells == 0 && !body.material.breakable)
       throw Error(ErrorKind::usage, "material '" + options.material + "' does not break");
     const BodyMesh source = body_mesh(body);
-    create_folder(options.out);
+    output::create_folder(options.out);
     result.report = report_of(options, body.name);
     if (!source.repairs.empty()) result.report.repairs.push_back({body.name, source.repairs});
-    const std::vector<geometry::Fragment> fragments = options.cells > 0
-                                                          ? shatter(options, source.mesh, body, result.report, progress)
-                                                          : hit(options, source.mesh, body, result.report, progress);
-    result.sequence = still_sequence(body, source.mesh, fragments, body.material.density);
+    const Cracked cracked = options.cells > 0 ? shatter(options, source.mesh, body, result.report, progress)
+                                              : hit(options, source.mesh, body, result.report, progress);
+    result.sequence = still_sequence(body, source, cracked, body.material.density);
     write_pieces(result.sequence, options.out, result.report.seconds.write);
   }
   finish(result, options.out, total);
@@ -326,17 +314,17 @@ StillResult extract_points(const ExtractOptions& options, Progress& progress) {
   double total = 0;
   {
     const Stopwatch watch(total);
-    geometry::TriangleMesh mesh;
+    BodyMesh source;
     SceneBody body;
     body.name = options.points.stem().string();
     if (!options.mesh.empty()) {
       body = body_of(options);
-      BodyMesh source = body_mesh(body);
-      mesh = std::move(source.mesh);
+      source = body_mesh(body);
       if (!source.repairs.empty()) result.report.repairs.push_back({body.name, source.repairs});
     }
+    const geometry::TriangleMesh& mesh = source.mesh;
     const crack::DamageField field = damage_field(options, mesh);
-    create_folder(options.out);
+    output::create_folder(options.out);
     auto repairs = std::move(result.report.repairs);
     result.report = report_of(options, body.name);
     result.report.repairs = std::move(repairs);
@@ -355,7 +343,7 @@ StillResult extract_points(const ExtractOptions& options, Progress& progress) {
     write_crack_surface(cracked.extraction, options.out / "cracks.ply");
     if (!mesh.faces.empty()) {
       body.material.name = "material";
-      result.sequence = still_sequence(body, mesh, cracked.cut.fragments, 1);
+      result.sequence = still_sequence(body, source, cracked, 1);
       write_pieces(result.sequence, options.out, result.report.seconds.write);
     }
   }

@@ -38,7 +38,7 @@ struct ExtractOptions : StillOptions {
 };
 
 struct StillResult {
-  Sequence sequence;  ///< a single frame; pieces in the coordinates of the mesh
+  output::Sequence sequence;  ///< a single frame; pieces in the coordinates of the mesh
   Report report;
 };
 

@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "core/stopwatch.h"
-#include "pipeline/sequence.h"
+#include "output/atomic_file.h"
 #include "validation/problem.h"
 
 namespace sunder::pipeline {
@@ -99,7 +99,7 @@ bool validate(const ValidateOptions& options, Progress& progress) {
   if (!interrupted) progress.report("total", 1);
   std::printf("%zu problems, %zu failed, %.1f s\n", problems.size(), failed, seconds);
   if (!options.json.empty())
-    write_atomically(options.json, nlohmann::ordered_json{{"problems", problems}}.dump(2) + "\n");
+    output::write_atomically(options.json, nlohmann::ordered_json{{"problems", problems}}.dump(2) + "\n");
   if (interrupted) throw Error(ErrorKind::interrupted, "interrupted");
   return failed == 0;
 }

@@ -58,6 +58,11 @@ void serialize(Archive& archive, Samples& samples) {
   archive(samples.points, samples.spacing);
 }
 
+template <class Archive>
+void serialize(Archive& archive, SurfaceAttributes& a) {
+  archive(a.uv, a.normal, a.material, a.material_names, a.damage_time);
+}
+
 }  // namespace sunder::geometry
 
 namespace sunder::mpm {
@@ -128,27 +133,17 @@ void serialize(Archive& archive, World::State& state) {
 
 }  // namespace sunder::rigid
 
-namespace sunder::pipeline {
-
-template <class Archive>
-void serialize(Archive& archive, RigidPart& part) {
-  archive(part.mass, part.centre, part.inertia);
-}
-
-template <class Archive>
-void serialize(Archive& archive, Particles& particles) {
-  archive(particles.samples, particles.damage);
-}
+namespace sunder::output {
 
 template <class Archive>
 void serialize(Archive& archive, Piece& p) {
-  archive(p.id, p.name, p.body, p.parent, p.generation, p.birth_time, p.death_time, p.mesh, p.inside, p.volume, p.area,
-          p.mass, p.closed, p.material);
+  archive(p.id, p.name, p.body, p.parent, p.generation, p.birth_time, p.death_time, p.birth, p.birth_energy, p.mesh,
+          p.source_face, p.surface, p.volume, p.area, p.mass, p.inside_area, p.closed, p.material);
 }
 
 template <class Archive>
 void serialize(Archive& archive, PiecePose& pose) {
-  archive(pose.piece, pose.pose);
+  archive(pose.piece, pose.pose, pose.twist);
 }
 
 template <class Archive>
@@ -159,6 +154,20 @@ void serialize(Archive& archive, Frame& frame) {
 template <class Archive>
 void serialize(Archive& archive, Sequence& s) {
   archive(s.name, s.frame_rate, s.start_frame, s.pieces, s.frames);
+}
+
+}  // namespace sunder::output
+
+namespace sunder::pipeline {
+
+template <class Archive>
+void serialize(Archive& archive, RigidPart& part) {
+  archive(part.mass, part.centre, part.inertia);
+}
+
+template <class Archive>
+void serialize(Archive& archive, Particles& particles) {
+  archive(particles.samples, particles.damage);
 }
 
 template <class Archive>

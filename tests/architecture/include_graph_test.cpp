@@ -21,8 +21,9 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"mpm", {"core", "geometry", "mpm"}},
     {"crack", {"core", "geometry", "crack"}},
     {"rigid", {"core", "geometry", "rigid", "tbb"}},
+    {"output", {"core", "geometry", "output"}},
     {"validation", {"core", "geometry", "mpm", "crack", "rigid", "validation"}},
-    {"pipeline", {"core", "geometry", "mpm", "crack", "rigid", "validation", "pipeline"}},
+    {"pipeline", {"core", "geometry", "mpm", "crack", "rigid", "output", "validation", "pipeline"}},
 };
 
 /// Which third-party header prefixes a module's .cpp files and detail headers may include.
@@ -34,8 +35,9 @@ const std::map<std::string, std::set<std::string>> libraries = {
     {"rigid",
      {"btBulletDynamicsCommon.h", "btBulletCollisionCommon.h", "BulletCollision", "BulletDynamics", "LinearMath",
       "tbb"}},
+    {"output", {"tiny_gltf.h", "tbb"}},
     {"validation", {}},
-    {"pipeline", {"CLI", "cereal", "toml++", "nlohmann", "tiny_gltf.h", "tbb"}},
+    {"pipeline", {"CLI", "cereal", "toml++", "nlohmann", "tbb"}},
 };
 
 struct Include {

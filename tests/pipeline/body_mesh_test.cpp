@@ -10,7 +10,7 @@
 #include "geometry/primitives.h"
 #include "pipeline/detail/mesh_catalogue.h"
 #include "pipeline/scene.h"
-#include "tests/pipeline/scratch_folder.h"
+#include "tests/output/scratch_folder.h"
 
 namespace sunder::pipeline {
 namespace {
@@ -32,7 +32,7 @@ SceneBody box_body() {
 
 // A body whose mesh is a box of 1 x 2 x 3 file units with its corner at the file's origin, less its first `missing`
 // faces.
-SceneBody file_body(const ScratchFolder& folder, int missing = 0) {
+SceneBody file_body(const output::ScratchFolder& folder, int missing = 0) {
   geometry::TriangleMesh mesh =
       geometry::transformed(geometry::box(Vec3(1, 2, 3)), Mat3::Identity(), Vec3(0.5, 1, 1.5));
   mesh.faces.erase(mesh.faces.begin(), mesh.faces.begin() + missing);
@@ -54,7 +54,7 @@ TEST(BodyMesh, AnchorsByBaseCentreOrOrigin) {
   body.anchor = Anchor::centre;
   box = geometry::bounds(body_mesh(body).mesh);
   expect_near(box.center(), body.position);
-  const ScratchFolder folder;
+  const output::ScratchFolder folder;
   SceneBody crate = file_body(folder);
   crate.anchor = Anchor::origin;
   crate.position = body.position;
@@ -71,7 +71,7 @@ TEST(BodyMesh, TurnsBeforeItIsPlaced) {
 }
 
 TEST(BodyMesh, ConvertsUnitAndUpAxisAndScales) {
-  const ScratchFolder folder;
+  const output::ScratchFolder folder;
   SceneBody body = file_body(folder);
   body.mesh.load.metres_per_unit = 0.01;
   expect_near(geometry::bounds(body_mesh(body).mesh).sizes(), Vec3(0.01, 0.02, 0.03));
@@ -112,7 +112,7 @@ TEST(BodyMesh, MakesEveryPrimitiveASolid) {
 }
 
 TEST(BodyMesh, MendsAnOpenMeshAndSaysSo) {
-  const ScratchFolder folder;
+  const output::ScratchFolder folder;
   const BodyMesh result = body_mesh(file_body(folder, 2));
   EXPECT_FALSE(result.repairs.empty());
   EXPECT_NEAR(geometry::mass_properties(result.mesh).volume, 6, kRounding);
@@ -130,7 +130,7 @@ std::string complaint(const SceneBody& body, ErrorKind kind) {
 }
 
 TEST(BodyMesh, RefusesAnOpenMeshWhenRepairIsOff) {
-  const ScratchFolder folder;
+  const output::ScratchFolder folder;
   SceneBody body = file_body(folder, 2);
   body.mesh.allow_repair = false;
   const std::string message = complaint(body, ErrorKind::mesh);
@@ -141,14 +141,14 @@ TEST(BodyMesh, RefusesAnOpenMeshWhenRepairIsOff) {
 }
 
 TEST(BodyMesh, RefusesWhatRepairCannotMend) {
-  const ScratchFolder folder;
+  const output::ScratchFolder folder;
   const SceneBody body = file_body(folder, 11);  // one triangle encloses nothing
   const std::string message = complaint(body, ErrorKind::mesh);
   EXPECT_NE(message.find("body 'crate'"), std::string::npos) << message;
 }
 
 TEST(BodyMesh, NamesTheBodyOfAnUnreadableFile) {
-  const ScratchFolder folder;
+  const output::ScratchFolder folder;
   SceneBody body = file_body(folder);
   std::ofstream(body.mesh.file) << "no mesh";
   const std::string message = complaint(body, ErrorKind::io);

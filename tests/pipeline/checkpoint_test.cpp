@@ -12,7 +12,7 @@
 
 #include "core/random.h"
 #include "pipeline/run.h"
-#include "tests/pipeline/scratch_folder.h"
+#include "tests/output/scratch_folder.h"
 
 namespace sunder::pipeline {
 namespace {
@@ -67,7 +67,8 @@ class Stopping final : public Progress {
 /// All files by name; of the report what does not measure time.
 std::map<std::string, std::string> results(const fs::path& folder) {
   std::map<std::string, std::string> files;
-  for (const auto& entry : fs::directory_iterator(folder)) files[entry.path().filename()] = read_all(entry.path());
+  for (const auto& entry : fs::directory_iterator(folder))
+    files[entry.path().filename()] = output::read_all(entry.path());
   auto report = nlohmann::json::parse(files.at("report.json"));
   for (const char* key : {"seconds", "peak_memory_mb", "threads"}) report.erase(key);
   report["mpm"].erase("particle_steps_per_second");
@@ -96,7 +97,7 @@ class CheckpointTest : public testing::Test {
     return run(scene_, {.out = folder_ / out, .resume = resume}, progress);
   }
 
-  ScratchFolder folder_;
+  output::ScratchFolder folder_;
   Scene scene_;
 };
 
@@ -160,7 +161,7 @@ TEST_F(CheckpointTest, DamagedCheckpointsAreRefused) {
   Stopping soon(60);
   go("out", soon);
   const fs::path file = folder_ / "out" / "checkpoint.bin";
-  const std::string good = read_all(file);
+  const std::string good = output::read_all(file);
   // Cut short, emptied, and with one wrong byte at ten places.
   std::vector<std::string> bad = {good.substr(0, good.size() / 2), good.substr(0, 30), "", "no checkpoint at all"};
   for (std::uint64_t i = 0; i < 10; ++i) {

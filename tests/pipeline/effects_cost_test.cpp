@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/pipeline/scratch_folder.h"
+#include "tests/output/scratch_folder.h"
 
 namespace sunder::pipeline {
 namespace {
@@ -57,8 +57,8 @@ double instructions(const std::string& program, const fs::path& folder) {
       "cd " + folder.string() +
       " && LD_BIND_NOW=1 valgrind -q --tool=callgrind --toggle-collect=main --callgrind-out-file=" + counts.string() +
       " " + binary.string() + " run cube.toml --threads 1 --log json --out out >run.log 2>&1";
-  EXPECT_EQ(std::system(command.c_str()), 0) << read_all(folder / "run.log");
-  EXPECT_NE(read_all(folder / "run.log").find("\"event\":\"fracture\""), std::string::npos);
+  EXPECT_EQ(std::system(command.c_str()), 0) << output::read_all(folder / "run.log");
+  EXPECT_NE(output::read_all(folder / "run.log").find("\"event\":\"fracture\""), std::string::npos);
   std::ifstream in(counts);
   for (std::string word; in >> word;)
     if (double count = 0; word == "totals:" && in >> count) return count;
@@ -70,7 +70,7 @@ TEST(EffectsCostSlow, WhatIsOffTakesNoInstructions) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "valgrind does not run sanitized programs";
 #endif
-  const ScratchFolder folder;
+  const output::ScratchFolder folder;
   auto counting = std::async(std::launch::async, instructions, "sunder_without_effects", folder / "without");
   const double with = instructions("sunder", folder / "with"), without = counting.get();
   std::printf("%.0f instructions, %.0f without effects, ratio %.6f\n", with, without, with / without);

@@ -5,7 +5,7 @@
 #include "geometry/primitives.h"
 #include "pipeline/handover.h"
 #include "pipeline/run.h"
-#include "tests/pipeline/scratch_folder.h"
+#include "tests/output/scratch_folder.h"
 
 namespace sunder::pipeline {
 namespace {
@@ -21,11 +21,11 @@ class Motion : public testing::Test {
     return run(chosen, {.out = folder_ / "out"}, progress);
   }
 
-  ScratchFolder folder_;
+  output::ScratchFolder folder_;
 };
 
-const Pose& last_pose(const Sequence& sequence, int piece) {
-  for (const PiecePose& p : sequence.frames.back().poses)
+const Pose& last_pose(const output::Sequence& sequence, int piece) {
+  for (const output::PiecePose& p : sequence.frames.back().poses)
     if (p.piece == piece) return p.pose;
   throw Error(ErrorKind::internal, "the piece is gone");
 }
@@ -98,12 +98,12 @@ glb = false
   Vec3 before = Vec3::Zero(), after = Vec3::Zero();
   double scale = 0;
   for (std::size_t b = 0; b < 2; ++b) {
-    const Piece& piece = result.sequence.pieces[b];
+    const output::Piece& piece = result.sequence.pieces[b];
     before += piece.mass * flying.bodies[b].velocity;
     scale += piece.mass * flying.bodies[b].velocity.norm();
   }
   const auto& frames = result.sequence.frames;
-  const Frame &last = frames.back(), &previous = frames[frames.size() - 2];
+  const output::Frame &last = frames.back(), &previous = frames[frames.size() - 2];
   ASSERT_EQ(last.poses.size(), previous.poses.size()) << "something broke in the last frame";
   for (std::size_t k = 0; k < last.poses.size(); ++k)
     after += result.sequence.pieces[static_cast<std::size_t>(last.poses[k].piece)].mass * flying.frame_rate *
@@ -278,7 +278,7 @@ TEST_F(Motion, SolvesSideBySideDoNotDependOnThreads) {
     const RunResult result = run_scene(panes);
     ASSERT_GE(result.report.fractures.size(), 4u);
     for (int i = 0; i < 4; ++i) EXPECT_EQ(result.report.fractures[static_cast<std::size_t>(i)].time, 0);
-    results.push_back(read_all(folder_ / "out" / "fragments.glb"));
+    results.push_back(output::read_all(folder_ / "out" / "fragments.glb"));
   }
   EXPECT_TRUE(results[1] == results[0]);
   EXPECT_TRUE(results[2] == results[0]);

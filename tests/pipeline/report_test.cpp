@@ -9,10 +9,10 @@
 namespace sunder::pipeline {
 namespace {
 
-Sequence broken_cup() {
-  Sequence sequence;
+output::Sequence broken_cup() {
+  output::Sequence sequence;
   sequence.name = "cup";
-  Piece cup, shard;
+  output::Piece cup, shard;
   cup.name = cup.body = "cup";
   cup.death_time = 0.1;
   shard.id = 1;

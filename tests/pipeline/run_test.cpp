@@ -49,9 +49,9 @@ void PrintTo(const Demo& d, std::ostream* out) { *out << d.name; }
 
 class DemoScene : public testing::TestWithParam<Demo> {};
 
-std::vector<const Piece*> alive(const Sequence& sequence) {
-  std::vector<const Piece*> pieces;
-  for (const Piece& p : sequence.pieces)
+std::vector<const output::Piece*> alive(const output::Sequence& sequence) {
+  std::vector<const output::Piece*> pieces;
+  for (const output::Piece& p : sequence.pieces)
     if (std::isinf(p.death_time)) pieces.push_back(&p);
   return pieces;
 }
@@ -60,18 +60,18 @@ TEST_P(DemoScene, BreaksIntoClosedFragmentsThatAddUp) {
   const fs::path out = scratch(GetParam().name);
   const Scene scene = demo(GetParam().name, GetParam().duration);
   const RunResult result = run_quietly(scene, out);
-  const Sequence& sequence = result.sequence;
+  const output::Sequence& sequence = result.sequence;
 
   std::map<std::string, double> volume, original;
   int fragments = 0;
-  for (const Piece& p : sequence.pieces) {
+  for (const output::Piece& p : sequence.pieces) {
     if (p.parent < 0) original[p.body] = p.volume;
     EXPECT_GT(p.volume, 0) << p.name;
-    EXPECT_TRUE(p.mesh.faces.size() == p.inside.size()) << p.name;
+    EXPECT_TRUE(geometry::fits(p.surface, p.mesh)) << p.name;
     EXPECT_LT(geometry::mass_properties(p.mesh).centroid.norm(), 1e-9)
         << p.name << " is not centred on its centre of mass";
   }
-  for (const Piece* p : alive(sequence)) {
+  for (const output::Piece* p : alive(sequence)) {
     volume[p->body] += p->volume;
     if (p->parent < 0) continue;
     ++fragments;
@@ -87,8 +87,8 @@ TEST_P(DemoScene, BreaksIntoClosedFragmentsThatAddUp) {
     EXPECT_LT(f.momentum_error, 1e-9) << f.body;
     EXPECT_GT(f.steps, 0);
   }
-  for (const Frame& frame : sequence.frames)
-    for (const PiecePose& pose : frame.poses) {
+  for (const output::Frame& frame : sequence.frames)
+    for (const output::PiecePose& pose : frame.poses) {
       ASSERT_TRUE(pose.pose.position.allFinite()) << "frame at " << frame.time;
       ASSERT_NEAR(pose.pose.orientation.norm(), 1, 1e-9);
     }

@@ -13,7 +13,7 @@
 #include "geometry/inspect.h"
 #include "geometry/mass_properties.h"
 #include "geometry/primitives.h"
-#include "tests/pipeline/scratch_folder.h"
+#include "tests/output/scratch_folder.h"
 
 namespace sunder::pipeline {
 namespace {
@@ -62,7 +62,7 @@ class Still : public testing::Test {
     return options;
   }
 
-  const ScratchFolder folder_;
+  const output::ScratchFolder folder_;
 };
 
 StillResult run(const FractureOptions& options) {
@@ -119,29 +119,29 @@ std::string cloud_of(const Inside& damaged) {
 bool in_slab(const Vec3& x) { return std::abs(x.y()) < 0.08; }
 
 /// The pieces that stand there in the end.
-std::vector<Piece> standing(const StillResult& result) {
-  std::vector<Piece> pieces;
-  for (const PiecePose& pose : result.sequence.frames.at(0).poses)
+std::vector<output::Piece> standing(const StillResult& result) {
+  std::vector<output::Piece> pieces;
+  for (const output::PiecePose& pose : result.sequence.frames.at(0).poses)
     pieces.push_back(result.sequence.pieces.at(static_cast<std::size_t>(pose.piece)));
   return pieces;
 }
 
-double volume_of(const std::vector<Piece>& pieces) {
+double volume_of(const std::vector<output::Piece>& pieces) {
   double sum = 0;
-  for (const Piece& piece : pieces) sum += geometry::mass_properties(piece.mesh).volume;
+  for (const output::Piece& piece : pieces) sum += geometry::mass_properties(piece.mesh).volume;
   return sum;
 }
 
 /// Pieces are closed, and so are their files, with the same volume.
 void expect_pieces_and_files(const StillResult& result, const fs::path& out) {
-  const std::vector<Piece> pieces = standing(result);
+  const std::vector<output::Piece> pieces = standing(result);
   std::size_t files = 0;
   for (const auto& entry : fs::directory_iterator(out / "fragments")) files += entry.path().extension() == ".obj";
   EXPECT_EQ(files, pieces.size());
-  for (const Piece& piece : pieces) {
+  for (const output::Piece& piece : pieces) {
     EXPECT_TRUE(piece.closed) << piece.name;
     EXPECT_TRUE(geometry::is_closed_two_manifold(piece.mesh)) << piece.name;
-    EXPECT_EQ(piece.inside.size(), piece.mesh.faces.size());
+    EXPECT_TRUE(geometry::fits(piece.surface, piece.mesh));
     const geometry::TriangleMesh read = geometry::load_mesh(out / "fragments" / (piece.name + ".obj"));
     EXPECT_TRUE(geometry::is_closed_two_manifold(read)) << piece.name;
     EXPECT_NEAR(geometry::mass_properties(read).volume, geometry::mass_properties(piece.mesh).volume,
@@ -149,14 +149,14 @@ void expect_pieces_and_files(const StillResult& result, const fs::path& out) {
         << piece.name;  // assimp keeps single precision
   }
   EXPECT_TRUE(fs::exists(out / "fragments.glb"));
-  EXPECT_NE(read_all(out / "report.json").find("\"fallbacks\""), std::string::npos);
+  EXPECT_NE(output::read_all(out / "report.json").find("\"fallbacks\""), std::string::npos);
 }
 
 /// What the header of a crack surface says, and what follows it.
 struct CrackFile {
   long vertices = -1, faces = -1, lines = 0;
   explicit CrackFile(const fs::path& file) {
-    std::istringstream text(read_all(file));
+    std::istringstream text(output::read_all(file));
     std::string line;
     bool body = false;
     while (std::getline(text, line)) {
@@ -178,7 +178,7 @@ void expect_crack_file(const StillResult& result, const fs::path& out) {
 
 TEST_F(Still, CellsAreClosedPiecesThatMakeUpTheBody) {
   const StillResult result = run(shatter_options(12));
-  const std::vector<Piece> pieces = standing(result);
+  const std::vector<output::Piece> pieces = standing(result);
   EXPECT_EQ(pieces.size(), 12u);  // a cube is convex: a piece per cell
   EXPECT_NEAR(volume_of(pieces), 1, volume_kept);
   EXPECT_LE(result.report.cut_volume_error, volume_kept);
@@ -187,7 +187,7 @@ TEST_F(Still, CellsAreClosedPiecesThatMakeUpTheBody) {
   EXPECT_TRUE(fs::exists(out() / "fragments" / "block_0011.obj"));
   EXPECT_FALSE(fs::exists(out() / "cracks.ply"));
   EXPECT_EQ(result.sequence.pieces.at(0).death_time, 0);  // the whole body is there, but gone
-  for (const Piece& piece : pieces) EXPECT_EQ(piece.parent, 0);
+  for (const output::Piece& piece : pieces) EXPECT_EQ(piece.parent, 0);
 }
 
 TEST_F(Still, CellsOfTheSameSeedAreTheSame) {
@@ -282,9 +282,10 @@ TEST_F(Still, WrongFractureOptionsAreNamed) {
 
 TEST_F(Still, ASlabOfDamagePartsTheBodyInTwo) {
   const StillResult result = run(extract_options(cloud_of(in_slab), true));
-  const std::vector<Piece> pieces = standing(result);
+  const std::vector<output::Piece> pieces = standing(result);
   ASSERT_EQ(pieces.size(), 2u);
-  for (const Piece& piece : pieces) EXPECT_NEAR(geometry::mass_properties(piece.mesh).volume, 0.5, half_bound * 0.5);
+  for (const output::Piece& piece : pieces)
+    EXPECT_NEAR(geometry::mass_properties(piece.mesh).volume, 0.5, half_bound * 0.5);
   EXPECT_NEAR(volume_of(pieces), 1, volume_kept);
   expect_pieces_and_files(result, out());
   expect_crack_file(result, out());

@@ -1,6 +1,6 @@
-#include "pipeline/detail/tracks.h"
+#include "output/detail/tracks.h"
 
-namespace sunder::pipeline::detail {
+namespace sunder::output::detail {
 namespace {
 
 // q and -q are the same rotation, but a viewer that interpolates between them spins the piece once around.
@@ -31,7 +31,7 @@ std::vector<Track> tracks(const Sequence& sequence) {
   for (const Frame& frame : sequence.frames) {
     const float time = static_cast<float>(frame.time - sequence.frames.front().time);
     std::vector<bool> alive(sequence.pieces.size(), false);
-    for (const auto& [piece, pose] : frame.poses) {
+    for (const auto& [piece, pose, twist] : frame.poses) {
       const std::size_t i = static_cast<std::size_t>(piece);
       alive.at(i) = true;
       append_pose(result[i], time, pose, previous[i]);
@@ -41,4 +41,4 @@ std::vector<Track> tracks(const Sequence& sequence) {
   return result;
 }
 
-}  // namespace sunder::pipeline::detail
+}  // namespace sunder::output::detail

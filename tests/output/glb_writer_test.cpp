@@ -6,11 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
-#include "pipeline/sequence.h"
-#include "tests/pipeline/example_sequence.h"
-#include "tests/pipeline/scratch_folder.h"
+#include "output/writers.h"
+#include "tests/output/example_sequence.h"
+#include "tests/output/scratch_folder.h"
 
-namespace sunder::pipeline {
+namespace sunder::output {
 namespace {
 
 using nlohmann::json;
@@ -187,4 +187,4 @@ TEST(GlbWriter, RefusesAPoseThatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace sunder::pipeline
+}  // namespace sunder::output

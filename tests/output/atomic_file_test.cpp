@@ -1,14 +1,15 @@
 /// Files are replaced whole or not at all.
+#include "output/atomic_file.h"
+
 #include <csignal>
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
 #include "core/error.h"
-#include "pipeline/sequence.h"
-#include "tests/pipeline/scratch_folder.h"
+#include "tests/output/scratch_folder.h"
 
-namespace sunder::pipeline {
+namespace sunder::output {
 namespace {
 
 // While it lives, no file can grow beyond `bytes`: the nearest thing to a full disk that needs no privileges.
@@ -79,4 +80,4 @@ TEST(AtomicFile, ATargetThatIsAFolderIsRefused) {
 }
 
 }  // namespace
-}  // namespace sunder::pipeline
+}  // namespace sunder::output

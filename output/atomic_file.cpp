@@ -1,3 +1,5 @@
+#include "output/atomic_file.h"
+
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
@@ -10,9 +12,8 @@
 #include <unistd.h>
 
 #include "core/error.h"
-#include "pipeline/sequence.h"
 
-namespace sunder::pipeline {
+namespace sunder::output {
 namespace {
 
 namespace fs = std::filesystem;
@@ -82,4 +83,4 @@ void create_folder(const std::filesystem::path& folder) {
   if (error) throw Error(ErrorKind::io, "cannot create the folder " + folder.string() + ": " + error.message());
 }
 
-}  // namespace sunder::pipeline
+}  // namespace sunder::output

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-namespace sunder::pipeline {
+namespace sunder::output {
 
 class ScratchFolder {
  public:
@@ -39,4 +39,4 @@ inline std::string read_all(const std::filesystem::path& file) {
   return text.str();
 }
 
-}  // namespace sunder::pipeline
+}  // namespace sunder::output

@@ -1,8 +1,8 @@
 #pragma once
 /// A short sequence for the writers: a bar that breaks into two tetrahedra at the third of five frames.
-#include "pipeline/sequence.h"
+#include "output/sequence.h"
 
-namespace sunder::pipeline {
+namespace sunder::output {
 
 inline Piece example_piece(int id, const std::string& name, int parent) {
   Piece piece;
@@ -13,7 +13,9 @@ inline Piece example_piece(int id, const std::string& name, int parent) {
   piece.generation = parent < 0 ? 0 : 1;
   piece.mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0.1234567891}};
   piece.mesh.faces = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
-  piece.inside = {parent >= 0, false, false, false};
+  piece.source_face = {parent >= 0 ? -1 : 0, 1, 2, 3};
+  piece.surface.material_names = {"glass_outside", "glass_inside"};
+  piece.surface.material = {parent >= 0 ? 1 : 0, 0, 0, 0};
   piece.volume = 0.02;
   piece.mass = 50;
   piece.material = "glass";
@@ -33,10 +35,10 @@ inline Sequence example_sequence() {
     const Pose pose{Vec3(0, 1 - time, 0), Quat(Eigen::AngleAxisd(2 * time, Vec3::UnitZ()))};
     // Every second quaternion has the other sign: the same rotation.
     const Pose flipped{Vec3(0, 1, 0), i % 2 ? pose.orientation : Quat(-pose.orientation.coeffs())};
-    if (i < 2) sequence.frames.push_back({time, {{0, pose}}});
-    if (i >= 2) sequence.frames.push_back({time, {{1, pose}, {2, flipped}}});
+    if (i < 2) sequence.frames.push_back({time, {{0, pose, {}}}});
+    if (i >= 2) sequence.frames.push_back({time, {{1, pose, {}}, {2, flipped, {}}}});
   }
   return sequence;
 }
 
-}  // namespace sunder::pipeline
+}  // namespace sunder::output

@@ -7,10 +7,11 @@
 #include <string>
 
 #include "core/error.h"
-#include "pipeline/detail/look.h"
-#include "pipeline/detail/sequence_checks.h"
-#include "pipeline/detail/tracks.h"
-#include "pipeline/sequence.h"
+#include "output/atomic_file.h"
+#include "output/detail/look.h"
+#include "output/detail/sequence_checks.h"
+#include "output/detail/tracks.h"
+#include "output/writers.h"
 
 #define TINYGLTF_IMPLEMENTATION
 #define TINYGLTF_NO_STB_IMAGE
@@ -23,7 +24,7 @@
 #include <tiny_gltf.h>
 #pragma GCC diagnostic pop
 
-namespace sunder::pipeline {
+namespace sunder::output {
 namespace {
 
 // A run of bytes of the file's one buffer that accessors of one kind share.
@@ -57,14 +58,13 @@ class Builder {
 
  private:
   // Added when first used: validators complain of materials that nothing wears.
-  int material(const std::string& name, bool inside) {
-    const auto [entry, is_new] = material_index_.try_emplace({name, inside}, static_cast<int>(model_.materials.size()));
+  int material(const std::string& name, const std::string& substance) {
+    const auto [entry, is_new] = material_index_.try_emplace(name, static_cast<int>(model_.materials.size()));
     if (!is_new) return entry->second;
-    const detail::Look look = detail::look_of(name);
-    const std::array<double, 3>& colour = inside ? look.inside : look.outside;
+    const detail::Look look = detail::look_of(name, substance);
     tinygltf::Material added;
-    added.name = name + (inside ? "_inside" : "_outside");
-    added.pbrMetallicRoughness.baseColorFactor = {colour[0], colour[1], colour[2], 1};
+    added.name = name;
+    added.pbrMetallicRoughness.baseColorFactor = {look.colour[0], look.colour[1], look.colour[2], 1};
     added.pbrMetallicRoughness.metallicFactor = look.metallic;
     added.pbrMetallicRoughness.roughnessFactor = look.roughness;
     model_.materials.push_back(added);
@@ -105,23 +105,25 @@ class Builder {
   }
 
   template <class Index>
-  int add_indices(const std::vector<geometry::Triangle>& faces, int component) {
+  int add_indices(const Piece& piece, const std::vector<int>& faces, int component) {
     std::vector<Index> values;
     values.reserve(3 * faces.size());
-    for (const geometry::Triangle& face : faces) values.insert(values.end(), face.begin(), face.end());
+    for (const int f : faces) {
+      const geometry::Triangle& face = piece.mesh.faces[static_cast<std::size_t>(f)];
+      values.insert(values.end(), face.begin(), face.end());
+    }
     return add_accessor<Index>(indices_, values, component, TINYGLTF_TYPE_SCALAR, 1);
   }
 
-  void add_primitive(tinygltf::Mesh& mesh, const Piece& piece, int positions, bool inside) {
-    const std::vector<geometry::Triangle> faces = detail::faces_of(piece, inside);
-    if (faces.empty()) return;
+  void add_primitive(tinygltf::Mesh& mesh, const Piece& piece, int positions, const detail::MaterialFaces& group) {
     tinygltf::Primitive primitive;
     primitive.attributes["POSITION"] = positions;
     // 65535 itself is reserved (primitive restart).
     primitive.indices = piece.mesh.vertices.size() <= 65535
-                            ? add_indices<std::uint16_t>(faces, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT)
-                            : add_indices<std::uint32_t>(faces, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT);
-    primitive.material = material(piece.material, inside);
+                            ? add_indices<std::uint16_t>(piece, group.faces, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT)
+                            : add_indices<std::uint32_t>(piece, group.faces, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT);
+    primitive.material =
+        material(piece.surface.material_names[static_cast<std::size_t>(group.material)], piece.material);
     primitive.mode = TINYGLTF_MODE_TRIANGLES;
     mesh.primitives.push_back(primitive);
   }
@@ -132,8 +134,8 @@ class Builder {
     tinygltf::Mesh mesh;
     mesh.name = piece.name;
     const int positions = add_positions(piece.mesh);
-    add_primitive(mesh, piece, positions, false);
-    add_primitive(mesh, piece, positions, true);
+    for (const detail::MaterialFaces& group : detail::faces_by_material(piece))
+      add_primitive(mesh, piece, positions, group);
     model_.meshes.push_back(mesh);
     return static_cast<int>(model_.meshes.size()) - 1;
   }
@@ -240,7 +242,7 @@ class Builder {
   tinygltf::Animation animation_;
   View positions_, indices_, motion_;
   int view_count_ = 0;
-  std::map<std::pair<std::string, bool>, int> material_index_;  // by material name and whether inside
+  std::map<std::string, int> material_index_;
   std::map<std::vector<float>, int> times_index_;
 };
 
@@ -260,4 +262,4 @@ void write_glb(const Sequence& sequence, const std::filesystem::path& file) {
   write_atomically(file, bytes.view());
 }
 
-}  // namespace sunder::pipeline
+}  // namespace sunder::output

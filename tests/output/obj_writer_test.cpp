@@ -6,11 +6,11 @@
 #include "core/error.h"
 #include "geometry/load.h"
 #include "geometry/mass_properties.h"
-#include "pipeline/sequence.h"
-#include "tests/pipeline/example_sequence.h"
-#include "tests/pipeline/scratch_folder.h"
+#include "output/writers.h"
+#include "tests/output/example_sequence.h"
+#include "tests/output/scratch_folder.h"
 
-namespace sunder::pipeline {
+namespace sunder::output {
 namespace {
 
 // Nine significant digits of a coordinate of order one.
@@ -102,4 +102,4 @@ TEST(ObjWriter, MissingFolderIsAnIoError) {
 }
 
 }  // namespace
-}  // namespace sunder::pipeline
+}  // namespace sunder::output

@@ -3,9 +3,9 @@
 #include <array>
 #include <vector>
 
-#include "pipeline/sequence.h"
+#include "output/sequence.h"
 
-namespace sunder::pipeline::detail {
+namespace sunder::output::detail {
 
 /// Motion of one piece at the frames where it is alive; `t` = 0 is the first frame of the sequence [s].
 struct Track {
@@ -21,4 +21,4 @@ struct Track {
 /// One track per piece.
 std::vector<Track> tracks(const Sequence& sequence);
 
-}  // namespace sunder::pipeline::detail
+}  // namespace sunder::output::detail

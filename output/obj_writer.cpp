@@ -5,12 +5,12 @@
 
 #include <tbb/parallel_for.h>
 
-#include "core/error.h"
-#include "pipeline/detail/look.h"
-#include "pipeline/detail/sequence_checks.h"
-#include "pipeline/sequence.h"
+#include "output/atomic_file.h"
+#include "output/detail/look.h"
+#include "output/detail/sequence_checks.h"
+#include "output/writers.h"
 
-namespace sunder::pipeline {
+namespace sunder::output {
 namespace {
 
 // 9 significant digits: what a reader with single precision needs to get every bit of it.
@@ -45,11 +45,14 @@ class TextBuffer {
   std::string text_;
 };
 
-void append_faces(TextBuffer& out, const Piece& piece, bool inside, long first) {
-  const std::vector<geometry::Triangle> faces = detail::faces_of(piece, inside);
-  if (faces.empty()) return;
-  out << "usemtl " << piece.material << (inside ? "_inside\n" : "_outside\n");
-  for (const auto& [a, b, c] : faces) out << "f " << first + a << " " << first + b << " " << first + c << "\n";
+void append_faces(TextBuffer& out, const Piece& piece, long first) {
+  for (const auto& [material, faces] : detail::faces_by_material(piece)) {
+    out << "usemtl " << piece.surface.material_names[static_cast<std::size_t>(material)] << "\n";
+    for (const int face : faces) {
+      const auto& [a, b, c] = piece.mesh.faces[static_cast<std::size_t>(face)];
+      out << "f " << first + a << " " << first + b << " " << first + c << "\n";
+    }
+  }
 }
 
 // `first` is the OBJ number of the piece's first vertex; OBJ counts all vertices of a file from 1.
@@ -60,8 +63,7 @@ void append_piece(TextBuffer& out, const Piece& piece, const Pose& pose, long fi
     const Vec3 x = rotation * vertex + pose.position;
     out << "v " << x.x() << " " << x.y() << " " << x.z() << "\n";
   }
-  append_faces(out, piece, false, first);
-  append_faces(out, piece, true, first);
+  append_faces(out, piece, first);
 }
 
 std::size_t estimated_size(const geometry::TriangleMesh& mesh) {
@@ -89,36 +91,31 @@ std::string frame_text(const Sequence& sequence, const Frame& frame) {
   return out.text();
 }
 
-void append_material(TextBuffer& out, std::string_view name, std::string_view side, const std::array<double, 3>& colour,
-                     const detail::Look& look) {
-  out << "newmtl " << name << side << "\n";
-  out << "Kd " << colour[0] << " " << colour[1] << " " << colour[2] << "\n";
+void append_material(TextBuffer& out, std::string_view name, const detail::Look& look) {
+  out << "newmtl " << name << "\n";
+  out << "Kd " << look.colour[0] << " " << look.colour[1] << " " << look.colour[2] << "\n";
   out << "Pr " << look.roughness << "\nPm " << look.metallic << "\n";
 }
 
 std::string material_text(const Sequence& sequence) {
   TextBuffer out(1000);
-  for (const std::string& name : detail::material_names(sequence)) {
-    const detail::Look look = detail::look_of(name);
-    append_material(out, name, "_outside", look.outside, look);
-    append_material(out, name, "_inside", look.inside, look);
-  }
+  for (const auto& [name, substance] : detail::surface_materials(sequence))
+    append_material(out, name, detail::look_of(name, substance));
   return out.text();
 }
+
+}  // namespace
 
 std::string frame_number(long number) {
   const std::string digits = std::to_string(number);
   return std::string(digits.size() < 4 ? 4 - digits.size() : 0, '0') + digits;
 }
 
-}  // namespace
-
 void write_obj_piece(const Piece& piece, const std::filesystem::path& file) {
   TextBuffer out(200 + 70 * piece.mesh.vertices.size() + 24 * piece.mesh.faces.size(), Digits::all);
   out << "# metres, Y up\no " << piece.name << "\n";
   for (const Vec3& x : piece.mesh.vertices) out << "v " << x.x() << " " << x.y() << " " << x.z() << "\n";
-  append_faces(out, piece, false, 1);
-  append_faces(out, piece, true, 1);
+  append_faces(out, piece, 1);
   write_atomically(file, out.text());
 }
 
@@ -128,4 +125,4 @@ void write_obj_frame(const Sequence& sequence, std::size_t frame, const std::fil
   write_atomically(dir / (sequence.name + "." + number + ".obj"), frame_text(sequence, sequence.frames.at(frame)));
 }
 
-}  // namespace sunder::pipeline
+}  // namespace sunder::output

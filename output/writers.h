@@ -1,0 +1,30 @@
+#pragma once
+/// A sequence as files. Every file is written under a temporary name and renamed, so that what has its final name is
+/// whole. All lengths in metres, Y up, unless a format says otherwise. Errors of all: ErrorKind::io with the file and
+/// the system's reason, ErrorKind::internal for a pose that is not finite.
+#include <filesystem>
+#include <string>
+
+#include "output/sequence.h"
+
+namespace sunder::output {
+
+/// "0012" for 12: frame numbers in file names have four digits or more.
+std::string frame_number(long number);
+
+/// One frame as Wavefront OBJ: `o` per piece, `usemtl` by the surface's materials, `vt` where there is texture, 9
+/// significant digits. File: dir/<name>.<frame number>.obj. Also writes the material file dir/<name>.mtl with the first
+/// frame.
+void write_obj_frame(const Sequence& sequence, std::size_t frame, const std::filesystem::path& dir);
+
+/// One piece where it was made, as Wavefront OBJ with every digit of its positions: what closed in memory stays closed
+/// in the file. Materials as above.
+void write_obj_piece(const Piece& piece, const std::filesystem::path& file);
+
+/// All of the sequence as binary glTF 2.0: each piece once, a primitive per material, node translation and rotation
+/// sampled at the frames, scale 0 before birth and after death by STEP, `extras` with id, body, parent, generation,
+/// birth time, volume, mass. Attributes: what the surface has of TEXCOORD_0 and NORMAL (else flat normals are left to
+/// the viewer), and _DAMAGE_TIME on pieces with cracks. t = 0 is the first frame.
+void write_glb(const Sequence& sequence, const std::filesystem::path& file);
+
+}  // namespace sunder::output
