@@ -20,3 +20,15 @@ function(sunder_node_folder name folder)
     DEPENDS ${copy}/installed ${sources} COMMENT "" VERBATIM)
   add_custom_target(${name}_node ALL DEPENDS ${copy}/copied)
 endfunction()
+
+# The report page, bundled into one source of the pipeline.
+function(sunder_report_page)
+  sunder_node_folder(page ${PROJECT_SOURCE_DIR}/page)
+  set(source ${PROJECT_BINARY_DIR}/generated/page_template.cpp)
+  set(copy ${PROJECT_BINARY_DIR}/node/page)
+  add_custom_command(OUTPUT ${source}
+    COMMAND ${CMAKE_COMMAND} -E make_directory ${PROJECT_BINARY_DIR}/generated
+    COMMAND ${CMAKE_COMMAND} -E chdir ${copy} ${NODE} build.mjs ${source}
+    DEPENDS ${copy}/copied COMMENT "Bundling the report page" VERBATIM)
+  target_sources(sunder_pipeline PRIVATE ${source})
+endfunction()

@@ -13,6 +13,7 @@
 #include "geometry/load.h"
 #include "pipeline/progress_display.h"
 #include "pipeline/quality.h"
+#include "pipeline/report_command.h"
 #include "pipeline/run.h"
 #include "pipeline/simulation.h"
 #include "pipeline/still.h"
@@ -295,6 +296,10 @@ int dispatch(int argc, char** argv, LogFormat& log) {
   auto* extract_app = app.add_subcommand("extract", "Crack surfaces and fragments from any cloud of damaged points");
   add_extract(*extract_app, still);
 
+  std::string report_folder;
+  auto* report_app = app.add_subcommand("report", "Write the report page of a run anew, from the files in its folder");
+  report_app->add_option("folder", report_folder, "Folder of the results")->required();
+
   ValidateOptions validate_options;
   auto* validate_app = app.add_subcommand(
       "validate", "Run the catalogue of validation problems; exit code 0 when every check holds, 1 when one fails");
@@ -310,6 +315,7 @@ int dispatch(int argc, char** argv, LogFormat& log) {
   if (*check_app) return check_command(check_file, check_quality, check_json);
   if (*fracture_app) return fracture_command(still, log);
   if (*extract_app) return extract_command(still, log);
+  if (*report_app) return report_command(report_folder);
   if (*validate_app) return validate_command(validate_options);
   return inspect_command(mesh_file, unit);
 }

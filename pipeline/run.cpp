@@ -12,6 +12,7 @@
 #include "output/writers.h"
 #include "pipeline/checkpoint.h"
 #include "pipeline/quality.h"
+#include "pipeline/report_page.h"
 #include "pipeline/simulation.h"
 #include "sunder_version.h"
 
@@ -145,6 +146,7 @@ RunResult run(const Scene& scene, const RunOptions& options, Progress& progress)
   report.threads = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
   report.seconds.total += total;
   report.peak_memory_mb = peak_memory_mb();
+  keep_scene(scene.file, options.out);
   output::write_atomically(options.out / "report.json", to_json(report, result.sequence));
   return result;
 }
