@@ -1,5 +1,5 @@
 #pragma once
-/// The one exception that a user sees. Its kind is the exit code of the program (docs/scene.md lists them).
+/// The one exception that a user sees. Its kind is the exit code of the program (docs/running.md lists them).
 #include <stdexcept>
 #include <string>
 

@@ -54,6 +54,16 @@ int write_all(int descriptor, std::string_view bytes) {
 
 }  // namespace
 
+void require_writable(const fs::path& folder) {
+  std::error_code error;
+  fs::path there = fs::absolute(folder);
+  while (!fs::exists(there, error) && there.has_relative_path()) there = there.parent_path();
+  if (!fs::is_directory(there, error)) fail(folder, ENOTDIR);
+  const TemporaryFile temporary = create_beside(there / "probe");
+  close(temporary.descriptor);
+  unlink(temporary.path.c_str());
+}
+
 void write_atomically(const fs::path& file, std::string_view bytes) {
   const TemporaryFile temporary = create_beside(file);
   int reason = write_all(temporary.descriptor, bytes);

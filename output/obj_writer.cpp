@@ -119,9 +119,12 @@ void write_obj_piece(const Piece& piece, const std::filesystem::path& file) {
   write_atomically(file, out.text());
 }
 
+void write_obj_materials(const Sequence& sequence, const std::filesystem::path& dir) {
+  write_atomically(dir / (sequence.name + ".mtl"), material_text(sequence));
+}
+
 void write_obj_frame(const Sequence& sequence, std::size_t frame, const std::filesystem::path& dir) {
   const std::string number = frame_number(static_cast<long>(sequence.start_frame) + static_cast<long>(frame));
-  if (frame == 0) write_atomically(dir / (sequence.name + ".mtl"), material_text(sequence));
   write_atomically(dir / (sequence.name + "." + number + ".obj"), frame_text(sequence, sequence.frames.at(frame)));
 }
 

@@ -17,6 +17,9 @@ std::string frame_number(long number);
 /// frame.
 void write_obj_frame(const Sequence& sequence, std::size_t frame, const std::filesystem::path& dir);
 
+/// dir/<name>.mtl with the materials of all pieces so far.
+void write_obj_materials(const Sequence& sequence, const std::filesystem::path& dir);
+
 /// One piece where it was made, as Wavefront OBJ with every digit of its positions: what closed in memory stays closed
 /// in the file. Materials as above.
 void write_obj_piece(const Piece& piece, const std::filesystem::path& file);

@@ -91,6 +91,7 @@ void Simulation::break_bodies(const std::vector<Hit>& hits, Progress& progress) 
 void Simulation::settle(const Hit& hit, const FractureInput& input, const FractureOutcome& outcome,
                         const std::vector<rigid::BodyId>& partners) {
   Live& live = state_.live.at(hit.body);
+  const Pose pose = world_.state(hit.body).pose;
   live.last_solve = world_.time();
   FractureRecord record = record_of(input, outcome);
   record.piece = live.piece;
@@ -105,7 +106,7 @@ void Simulation::settle(const Hit& hit, const FractureInput& input, const Fractu
   else
     live.particles = outcome.own;
   state_.report.fractures.push_back(record);
-  options_.on_fracture(state_.report.fractures.back());
+  options_.on_solve({state_.report.fractures.back(), input, outcome, pose});
 }
 
 void Simulation::account(const FractureRecord& record, const FractureOutcome& outcome) {

@@ -1,21 +1,16 @@
 #include "pipeline/command_line.h"
 
-#include <cstdio>
 #include <iostream>
 #include <optional>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
-#include <tbb/global_control.h>
-#include <unistd.h>
 
 #include "geometry/inspect.h"
 #include "geometry/load.h"
 #include "pipeline/progress_display.h"
-#include "pipeline/quality.h"
 #include "pipeline/report_command.h"
-#include "pipeline/run.h"
-#include "pipeline/simulation.h"
+#include "pipeline/scene_commands.h"
 #include "pipeline/still.h"
 #include "pipeline/validate.h"
 #include "sunder_version.h"
@@ -23,119 +18,11 @@
 namespace sunder::pipeline {
 namespace {
 
-struct RunArguments {
-  std::string scene, out;
-  std::optional<Quality> quality;
-  std::optional<std::uint64_t> seed;
-  int threads = 0;
-  bool resume = false;
-};
-
 const std::map<std::string, Quality> quality_words = {
     {"draft", Quality::draft}, {"preview", Quality::preview}, {"final", Quality::final}};
 const std::map<std::string, LogFormat> log_words = {{"text", LogFormat::text}, {"json", LogFormat::json}};
-
-nlohmann::ordered_json event(const FractureRecord& f) {
-  return {{"event", "fracture"},
-          {"body", f.body},
-          {"time", f.time},
-          {"fragments", f.fragments},
-          {"particles", f.particles},
-          {"steps", f.steps},
-          {"seconds", f.seconds.sample + f.seconds.solve + f.seconds.extract + f.seconds.cut}};
-}
-
-void say(const nlohmann::ordered_json& json) { std::cout << json.dump() << std::endl; }
-
-std::string sentence(const FractureRecord& f) {
-  char text[256];
-  std::snprintf(text, sizeof text,
-                "%7.4f s  %s hit at %.2f m/s: %s, %.1f %% damaged, %ld particles x %ld steps in %.1f s", f.time,
-                f.body.c_str(), f.approach_speed,
-                f.fragments > 0 ? (std::to_string(f.fragments) + " fragments").c_str() : "stays whole",
-                100 * f.damaged_share, f.particles, f.steps, f.seconds.solve);
-  return text;
-}
-
-int run_command(const RunArguments& arguments, LogFormat log) {
-  Scene scene = load_scene(arguments.scene);
-  if (arguments.quality) scene.quality = *arguments.quality;
-  if (arguments.seed) scene.seed = *arguments.seed;
-  RunOptions options;
-  options.out =
-      arguments.out.empty() ? std::filesystem::path("out") / scene.name : std::filesystem::path(arguments.out);
-  options.threads = arguments.threads;
-  options.resume = arguments.resume;
-  if (arguments.resume && is_complete(scene, options.out)) {
-    if (log == LogFormat::json)
-      say({{"event", "done"}, {"report", (options.out / "report.json").string()}});
-    else
-      std::cout << "nothing left to do: " << options.out.string() << " holds the complete run" << std::endl;
-    return 0;
-  }
-  options.on_fracture = [&](const FractureRecord& f) {
-    if (log == LogFormat::json)
-      say(event(f));
-    else
-      std::cout << (isatty(STDERR_FILENO) ? "\r\x1b[K" : "") << sentence(f) << std::endl;
-  };
-  std::optional<tbb::global_control> limit;
-  if (arguments.threads > 0)
-    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(arguments.threads));
-  const auto progress = make_progress_display(log);
-  const RunResult result = run(scene, options, *progress);
-  if (log == LogFormat::json)
-    say({{"event", result.report.interrupted ? "interrupted" : "done"},
-         {"report", (options.out / "report.json").string()}});
-  else
-    std::cout << summary(result.report, result.sequence)
-              << (result.report.interrupted ? "interrupted; --resume goes on with what is in " : "written to ")
-              << options.out.string() << std::endl;
-  return result.report.interrupted ? static_cast<int>(ErrorKind::interrupted) : 0;
-}
-
-nlohmann::ordered_json plan_json(const EffectPlan& plan) {
-  nlohmann::ordered_json effects = nlohmann::ordered_json::array();
-  for (const EffectInfo& info : effect_registry())
-    effects.push_back({{"name", info.name},
-                       {"asked", name_of(plan.settings.asked[info.effect])},
-                       {"runs", plan.runs(info.effect)},
-                       {"why", plan.decisions[info.effect].why}});
-  return {{"effects", effects}};
-}
-
-void say_plan(const EffectPlan& plan) {
-  for (const EffectInfo& info : effect_registry()) {
-    const Decision& decision = plan.decisions[info.effect];
-    char line[64];
-    std::snprintf(line, sizeof line, "%-20s %-4s %-7s  ", std::string(info.name).c_str(),
-                  name_of(plan.settings.asked[info.effect]), decision.runs ? "runs" : "skipped");
-    std::cout << line << decision.why << "\n";
-  }
-}
-
-int check_command(const std::string& file, const std::optional<Quality>& quality, bool json) {
-  Scene scene = load_scene(file);
-  if (quality) scene.quality = *quality;
-  // Places the bodies as a run does, so that what a run would refuse is refused here.
-  SilentProgress progress;
-  const RunOptions options;
-  Simulation simulation(scene, options, progress);
-  const EffectPlan& plan = simulation.effects();
-  if (json) return std::cout << plan_json(plan).dump(2) << std::endl, 0;
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    const SceneBody& body = scene.bodies[b];
-    std::cout << body.name << ": " << simulation.sequence().pieces[b].mesh.faces.size() << " faces, "
-              << body.material.name << (body.breakable && body.material.breakable ? "" : ", does not break") << "\n";
-    for (const RepairRecord& repair : simulation.report().repairs)
-      for (const std::string& step : repair.steps)
-        if (repair.body == body.name) std::cout << "  repair: " << step << "\n";
-  }
-  say_plan(plan);
-  std::cout << "scene is valid: " << scene.duration << " s at " << scene.frame_rate << " frames/s, quality "
-            << name_of(scene.quality) << std::endl;
-  return 0;
-}
+const std::map<std::string, ProgressFormat> progress_words = {
+    {"auto", ProgressFormat::by_log}, {"openjd", ProgressFormat::openjd}, {"off", ProgressFormat::off}};
 
 int inspect_command(const std::string& file, double unit) {
   geometry::LoadSettings settings;
@@ -149,7 +36,7 @@ int inspect_command(const std::string& file, double unit) {
 }
 
 int validate_command(const ValidateOptions& options) {
-  const auto progress = make_progress_display(LogFormat::text);
+  const auto progress = make_progress_display({});
   return validate(options, *progress) ? 0 : 1;
 }
 
@@ -181,7 +68,7 @@ int say_still(const StillResult& result, const std::filesystem::path& out) {
   return 0;
 }
 
-int fracture_command(StillArguments& arguments, LogFormat log) {
+int fracture_command(StillArguments& arguments, const LogSettings& log) {
   FractureOptions& options = arguments.fracture;
   options.at = vector_of(arguments.at);
   options.direction = vector_of(arguments.direction);
@@ -195,7 +82,7 @@ int fracture_command(StillArguments& arguments, LogFormat log) {
   return say_still(fracture_mesh(options, *progress), options.out);
 }
 
-int extract_command(StillArguments& arguments, LogFormat log) {
+int extract_command(StillArguments& arguments, const LogSettings& log) {
   ExtractOptions& options = arguments.extract;
   options.out = arguments.out.empty() ? std::filesystem::path("out") / options.points.stem()
                                       : std::filesystem::path(arguments.out);
@@ -259,21 +146,30 @@ void add_extract(CLI::App& app, StillArguments& arguments) {
   add_still_options(app, options, arguments.out);
 }
 
-int dispatch(int argc, char** argv, LogFormat& log) {
+void add_run(CLI::App& app, RunArguments& arguments, LogSettings& log) {
+  app.add_option("scene", arguments.scene, "Scene file (TOML)")->required();
+  app.add_option("--out", arguments.out, "Folder for the results (default: out/<scene>)");
+  app.add_option("--quality", arguments.quality, "draft, preview or final; overrides the scene")
+      ->transform(CLI::CheckedTransformer(quality_words));
+  app.add_option("--threads", arguments.threads, "Threads to use (default: all)")->check(CLI::Range(1, 1024));
+  app.add_flag("--resume", arguments.resume, "Go on where a run into the same folder was stopped");
+  app.add_option("--seed", arguments.seed, "Overrides the scene's seed");
+  app.add_option("--frames", arguments.frames,
+                 "A-B or B: end with frame B; files that come one a frame are written from A on");
+  app.add_flag("--dry-run", arguments.dry_run, "Check all, say what would run and be written, and stop");
+  app.add_option("--log", log.format, "What happens as text or json")->transform(CLI::CheckedTransformer(log_words));
+  app.add_option("--progress", log.progress, "auto (a bar, or as the log), openjd (Open Job Description), off")
+      ->transform(CLI::CheckedTransformer(progress_words));
+}
+
+int dispatch(int argc, char** argv, LogSettings& log) {
   CLI::App app("Sunder breaks things the way they break: a scene file goes in, a shatter sequence comes out.");
   app.set_version_flag("--version", std::string(SUNDER_VERSION) + " (" + SUNDER_GIT + ")");
   app.require_subcommand(1);
 
   RunArguments run_arguments;
   auto* run_app = app.add_subcommand("run", "Simulate a scene");
-  run_app->add_option("scene", run_arguments.scene, "Scene file (TOML)")->required();
-  run_app->add_option("--out", run_arguments.out, "Folder for the results (default: out/<scene>)");
-  run_app->add_option("--quality", run_arguments.quality, "draft, preview or final; overrides the scene")
-      ->transform(CLI::CheckedTransformer(quality_words));
-  run_app->add_option("--threads", run_arguments.threads, "Threads to use (default: all)")->check(CLI::Range(1, 1024));
-  run_app->add_flag("--resume", run_arguments.resume, "Go on where a run into the same folder was stopped");
-  run_app->add_option("--seed", run_arguments.seed, "Overrides the scene's seed");
-  run_app->add_option("--log", log, "text or json")->transform(CLI::CheckedTransformer(log_words));
+  add_run(*run_app, run_arguments, log);
 
   std::string check_file, mesh_file;
   double unit = 1;
@@ -320,8 +216,10 @@ int dispatch(int argc, char** argv, LogFormat& log) {
   return inspect_command(mesh_file, unit);
 }
 
-int fail(LogFormat log, int code, const std::string& message) {
-  if (log == LogFormat::json) say({{"event", "error"}, {"code", code}, {"message", message}});
+int fail(const LogSettings& log, int code, const std::string& message) {
+  if (log.format == LogFormat::json)
+    std::cout << nlohmann::ordered_json{{"event", "error"}, {"code", code}, {"message", message}}.dump() << std::endl;
+  if (log.progress == ProgressFormat::openjd) std::cout << openjd_failure(message) << std::endl;
   std::cerr << "sunder: " << message << std::endl;
   return code;
 }
@@ -329,7 +227,7 @@ int fail(LogFormat log, int code, const std::string& message) {
 }  // namespace
 
 int command_line(int argc, char** argv) {
-  LogFormat log = LogFormat::text;
+  LogSettings log;
   try {
     return dispatch(argc, argv, log);
   } catch (const Error& error) {

@@ -1,5 +1,6 @@
 #include "pipeline/progress_display.h"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
@@ -118,10 +119,40 @@ class JsonLines final : public Display {
   }
 };
 
+class OpenJobDescriptionLines final : public Display {
+ public:
+  OpenJobDescriptionLines() : Display(1) {}
+
+ private:
+  bool wants(bool due, bool finished) const override { return due || finished; }
+  void show(const detail::ProgressState& state) override {
+    std::printf("%s\n", detail::openjd_lines(state).c_str());
+    std::fflush(stdout);
+  }
+};
+
+// Signals stop the run all the same.
+class NoDisplay final : public Display {
+ public:
+  NoDisplay() : Display(0) {}
+
+ private:
+  bool wants(bool, bool) const override { return false; }
+  void show(const detail::ProgressState&) override {}
+};
+
 }  // namespace
 
-std::unique_ptr<Progress> make_progress_display(LogFormat format) {
-  if (format == LogFormat::json) return std::make_unique<JsonLines>();
+std::string openjd_failure(const std::string& message) {
+  std::string line = "openjd_fail: " + message;
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  return line;
+}
+
+std::unique_ptr<Progress> make_progress_display(const LogSettings& log) {
+  if (log.progress == ProgressFormat::off) return std::make_unique<NoDisplay>();
+  if (log.progress == ProgressFormat::openjd) return std::make_unique<OpenJobDescriptionLines>();
+  if (log.format == LogFormat::json) return std::make_unique<JsonLines>();
   if (isatty(STDERR_FILENO)) return std::make_unique<TerminalBar>();
   return std::make_unique<LogLines>();
 }

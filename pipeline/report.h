@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "output/sequence.h"
-#include "rigid/world.h"
 #include "pipeline/effects.h"
 #include "pipeline/fracture.h"
+#include "rigid/world.h"
 
 namespace sunder::pipeline {
 

@@ -1,6 +1,5 @@
 #include "pipeline/run.h"
 
-#include <cmath>
 #include <fstream>
 #include <thread>
 
@@ -9,8 +8,8 @@
 
 #include "core/stopwatch.h"
 #include "output/atomic_file.h"
-#include "output/writers.h"
 #include "pipeline/checkpoint.h"
+#include "pipeline/outputs.h"
 #include "pipeline/quality.h"
 #include "pipeline/report_page.h"
 #include "pipeline/simulation.h"
@@ -19,9 +18,7 @@
 namespace sunder::pipeline {
 namespace {
 
-int frame_count(const Scene& scene) {
-  return static_cast<int>(std::floor(scene.duration * scene.frame_rate + 1e-9)) + 1;
-}
+int frame_count(const Scene& scene) { return last_frame(scene) - scene.start_frame + 1; }
 
 double peak_memory_mb() {
   rusage usage{};
@@ -29,34 +26,30 @@ double peak_memory_mb() {
   return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
-/// Frames of an earlier, longer run would play on after the end of this one.
-void remove_stale_frames(const std::filesystem::path& folder, const output::Sequence& sequence) {
-  const int last = sequence.start_frame + static_cast<int>(sequence.frames.size()) - 1;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    const std::string file = entry.path().filename().string(), head = sequence.name + ".";
-    if (!file.starts_with(head) || !file.ends_with(".obj")) continue;
-    const std::string number = file.substr(head.size(), file.size() - head.size() - 4);
-    if (number.empty() || number.find_first_not_of("0123456789") != std::string::npos || number.size() > 9) continue;
-    if (const int frame = std::stoi(number); frame < sequence.start_frame || frame > last)
-      std::filesystem::remove(entry.path());
-  }
-}
-
 /// A run from its beginning or from a checkpoint.
 class Run {
  public:
   Run(const Scene& scene, const RunOptions& options, Progress& progress)
       : scene_(scene), options_(options), fingerprint_(fingerprint(scene)) {
+    options_.on_solve = [this, &options](const SettledSolve& solve) {
+      {
+        const Stopwatch watch(simulation_->report().seconds.write);
+        write_solve(scene_, solve, options_.out);
+      }
+      options.on_solve(solve);
+    };
     std::optional<Checkpoint> checkpoint;
     if (options.resume) checkpoint = read_checkpoint(file(), fingerprint_);
     if (checkpoint) {
       steps_ = checkpoint->steps;
-      simulation_.emplace(scene, options, checkpoint->world, std::move(checkpoint->simulation));
+      simulation_.emplace(scene, options_, checkpoint->world, std::move(checkpoint->simulation));
     } else {
-      simulation_.emplace(scene, options, progress);
+      simulation_.emplace(scene, options_, progress);
       record();
     }
   }
+  Run(const Run&) = delete;
+  Run& operator=(const Run&) = delete;
 
   /// Steps through the frames that are left; false when the user stopped it.
   bool finish(Progress& progress) {
@@ -92,9 +85,8 @@ class Run {
 
   void record() {
     simulation_->record_frame();
-    if (!scene_.outputs.obj) return;
     const Stopwatch watch(simulation_->report().seconds.write);
-    output::write_obj_frame(simulation_->sequence(), simulation_->sequence().frames.size() - 1, options_.out);
+    write_newest_frame(scene_, simulation_->sequence(), options_.out);
   }
 
   void save() {
@@ -103,7 +95,7 @@ class Run {
   }
 
   const Scene& scene_;
-  const RunOptions& options_;
+  RunOptions options_;
   std::string fingerprint_;
   std::optional<Simulation> simulation_;
   int steps_ = 0;  ///< since the last frame
@@ -121,6 +113,7 @@ bool is_complete(const Scene& scene, const std::filesystem::path& out) {
 
 RunResult run(const Scene& scene, const RunOptions& options, Progress& progress) {
   output::create_folder(options.out);
+  output::require_writable(options.out);
   output::remove_abandoned(options.out);
   double total = 0;
   RunResult result;
@@ -134,9 +127,9 @@ RunResult run(const Scene& scene, const RunOptions& options, Progress& progress)
     result.report.interrupted = !complete;
     result.report.effects = effect_records(simulation.effects(), total_work(result.report.fractures));
     result.sequence = simulation.take_sequence();
-    if (scene.outputs.obj && complete) remove_stale_frames(options.out, result.sequence);
+    if (complete) remove_stale_files(scene, result.report, options.out);
     const Stopwatch writing(result.report.seconds.write);
-    if (scene.outputs.glb) output::write_glb(result.sequence, options.out / "fragments.glb");
+    write_whole_run(scene, result.sequence, options.out);
     if (complete) run.remove_checkpoint();
   }
   Report& report = result.report;
@@ -148,6 +141,7 @@ RunResult run(const Scene& scene, const RunOptions& options, Progress& progress)
   report.peak_memory_mb = peak_memory_mb();
   keep_scene(scene.file, options.out);
   output::write_atomically(options.out / "report.json", to_json(report, result.sequence));
+  if (scene.outputs.page) write_report_page(options.out);
   return result;
 }
 

@@ -72,10 +72,15 @@ struct FractureSettings {
   double voxel_size = 0;       ///< of that grid [m]; 0: 1/150 of the body's diagonal
 };
 
+/// What a run writes beside its report; docs/outputs.md describes every file.
 struct Outputs {
   bool obj = true;
   bool glb = true;
-  int checkpoint_interval = 10;  ///< frames between two checkpoints; 0: only when the run is stopped
+  bool vdb = false;                ///< the damage of every solve
+  bool page = true;                ///< index.html
+  std::optional<int> first_frame;  ///< of the files that come one a frame; not set: the scene's
+  std::optional<int> last_frame;   ///< with which the run ends; not set: the scene's
+  int checkpoint_interval = 10;    ///< frames between two checkpoints; 0: only when the run is stopped
 };
 
 struct Scene {
@@ -93,6 +98,12 @@ struct Scene {
   EffectSettings effects;
   Outputs outputs;
 };
+
+/// Number of the last frame: frames are at multiples of 1 / frame_rate up to the duration, unless outputs end earlier.
+int last_frame(const Scene& scene);
+
+/// Number of the first frame at or after a time.
+int frame_at(const Scene& scene, double time);
 
 /// Where named things live.
 struct AssetPaths {

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <limits>
 
@@ -96,9 +98,16 @@ constexpr std::array<Key<FractureSettings>, 14> kFractureKeys = {{
     {"voxel_size", [](const Value& value, FractureSettings& settings) { settings.voxel_size = value.positive(); }},
 }};
 
-constexpr std::array<Key<Outputs>, 3> kOutputKeys = {{
-    {"obj", [](const Value& value, Outputs& outputs) { outputs.obj = value.flag(); }},
-    {"glb", [](const Value& value, Outputs& outputs) { outputs.glb = value.flag(); }},
+template <bool Outputs::*format>
+void read_format(const Value& value, Outputs& outputs) {
+  outputs.*format = value.flag();
+}
+
+constexpr std::array<Key<Outputs>, 5> kOutputKeys = {{
+    {"obj", read_format<&Outputs::obj>},
+    {"glb", read_format<&Outputs::glb>},
+    {"vdb", read_format<&Outputs::vdb>},
+    {"page", read_format<&Outputs::page>},
     {"checkpoint_interval",
      [](const Value& value, Outputs& outputs) {
        outputs.checkpoint_interval = static_cast<int>(value.integer(0, kMaximumCount));
@@ -238,6 +247,15 @@ std::vector<SectionKeys> scene_keys() {
 }
 
 }  // namespace detail
+
+int last_frame(const Scene& scene) {
+  const int last = scene.start_frame + static_cast<int>(std::floor(scene.duration * scene.frame_rate + 1e-9));
+  return std::min(last, scene.outputs.last_frame.value_or(last));
+}
+
+int frame_at(const Scene& scene, double time) {
+  return scene.start_frame + static_cast<int>(std::ceil(time * scene.frame_rate - 1e-9));
+}
 
 AssetPaths default_assets() {
   const auto folder = [](const char* variable, const char* otherwise) {

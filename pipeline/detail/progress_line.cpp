@@ -58,4 +58,13 @@ std::string json_line(const ProgressState& state) {
   return line.dump();
 }
 
+std::string openjd_lines(const ProgressState& state) {
+  char text[160];
+  std::snprintf(text, sizeof text, "openjd_progress: %.1f", 100 * state.total_fraction);
+  std::string lines = text;
+  if (state.stage.empty()) return lines;
+  std::snprintf(text, sizeof text, "\nopenjd_status: %s %.0f%%", state.stage.c_str(), 100 * state.stage_fraction);
+  return lines + text;
+}
+
 }  // namespace sunder::pipeline::detail

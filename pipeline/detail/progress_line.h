@@ -28,4 +28,7 @@ std::string stage_line(const ProgressState& state);
 /// {"event":"progress","stage":"solve","percent":35.2,"seconds_left":125}.
 std::string json_line(const ProgressState& state);
 
+/// "openjd_progress: 35.2", and if a stage is known a second line "openjd_status: solve 80%".
+std::string openjd_lines(const ProgressState& state);
+
 }  // namespace sunder::pipeline::detail

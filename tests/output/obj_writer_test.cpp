@@ -26,6 +26,7 @@ TEST(ObjWriter, NamesFilesByFrameNumber) {
   const ScratchFolder folder;
   Sequence sequence = example_sequence();
   write_obj_frame(sequence, 0, folder.path());
+  write_obj_materials(sequence, folder.path());
   EXPECT_TRUE(std::filesystem::exists(folder / "example.0008.obj"));
   EXPECT_TRUE(std::filesystem::exists(folder / "example.mtl"));
   sequence.start_frame = 9998;
@@ -39,6 +40,7 @@ TEST(ObjWriter, WritesPiecesAndMaterials) {
   const Sequence sequence = example_sequence();
   write_obj_frame(sequence, 0, folder.path());
   write_obj_frame(sequence, 3, folder.path());
+  write_obj_materials(sequence, folder.path());
   const std::string first = read_all(folder / "example.0008.obj"), text = read_all(folder / "example.0011.obj");
   EXPECT_EQ(count(first, "\no "), 1);
   EXPECT_EQ(count(first, "_inside"), 0);

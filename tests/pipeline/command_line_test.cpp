@@ -3,9 +3,11 @@
 
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace sunder::pipeline {
 namespace {
@@ -75,6 +77,41 @@ TEST_F(CommandLine, AFileThatCannotBeReadIsFive) {
 TEST_F(CommandLine, JsonErrorsCarryTheCode) {
   const Outcome outcome = sunder({"run", (folder_ / "none.toml").string(), "--log", "json"});
   EXPECT_NE(outcome.out.find("\"code\":2"), std::string::npos) << outcome.out;
+}
+
+TEST_F(CommandLine, OpenJobDescriptionHearsOfFailures) {
+  const Outcome outcome = sunder({"run", (folder_ / "none.toml").string(), "--progress", "openjd"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_TRUE(outcome.out.starts_with("openjd_fail: ")) << outcome.out;
+}
+
+TEST_F(CommandLine, RangesOfFramesAreChecked) {
+  const std::string scene =
+      file("short.toml", "[scene]\nduration = 0.1\nframe_rate = 50\nstart_frame = 1001\n" + body_ + "\"cup\"\n");
+  for (const char* wrong : {"0", "1001-1007", "1003-1002", "1-", "a", "1001-1002x2"}) {
+    const Outcome outcome = sunder({"run", scene, "--frames", wrong, "--out", (folder_ / "out").string()});
+    EXPECT_EQ(outcome.code, 2) << wrong;
+    EXPECT_NE(outcome.err.find("1001-1006"), std::string::npos) << outcome.err;
+  }
+  ASSERT_EQ(sunder({"run", scene, "--frames", "1003-1004", "--out", (folder_ / "out").string()}).code, 0);
+  std::set<std::string> frames;
+  for (const auto& entry : fs::directory_iterator(folder_ / "out"))
+    if (entry.path().extension() == ".obj") frames.insert(entry.path().filename());
+  EXPECT_EQ(frames, (std::set<std::string>{"short.1003.obj", "short.1004.obj"}));
+}
+
+TEST_F(CommandLine, ADryRunChecksEverythingAndWritesNothing) {
+  const std::string scene = file("short.toml", "[scene]\nduration = 0.1\nframe_rate = 50\n" + body_ + "\"cup\"\n");
+  const fs::path out = folder_ / "new" / "out";
+  const Outcome outcome = sunder({"run", scene, "--dry-run", "--out", out.string()});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("short.####.obj, 6 files"), std::string::npos) << outcome.out;
+  EXPECT_FALSE(fs::exists(folder_ / "new"));
+  const auto json =
+      nlohmann::json::parse(sunder({"run", scene, "--dry-run", "--log", "json", "--out", out.string()}).out);
+  EXPECT_EQ(json["last_frame"], 6);
+  EXPECT_EQ(sunder({"run", scene, "--dry-run", "--out", file("occupied", "")}).code, 5);
+  EXPECT_EQ(sunder({"run", scene, "--out", (folder_ / "occupied").string()}).code, 5);
 }
 
 TEST_F(CommandLine, AValidSceneChecksAndRuns) {

@@ -33,10 +33,41 @@ TEST(ProgressLine, DrawsTheBar) {
   EXPECT_EQ(detail::bar_line({"cut", 1, 1.5, 0}), "[########################] 100%  cut 100%  0 s left");
 }
 
+TEST(ProgressLine, SpeaksOpenJobDescription) {
+  EXPECT_EQ(detail::openjd_lines({"solve", 0.8, 0.5, 125}), "openjd_progress: 50.0\nopenjd_status: solve 80%");
+  EXPECT_EQ(detail::openjd_lines({"", 0, 1, 0}), "openjd_progress: 100.0");
+  EXPECT_EQ(openjd_failure("no room\nleft"), "openjd_fail: no room left");
+}
+
+TEST(ProgressDisplay, OpenJobDescriptionLinesEndAtAHundred) {
+  testing::internal::CaptureStdout();
+  {
+    const auto display = make_progress_display({LogFormat::text, ProgressFormat::openjd});
+    for (int i = 0; i <= 100; ++i) {
+      display->report("solve", i / 100.0);
+      display->report("total", i / 100.0);
+    }
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStdout(),
+            "openjd_progress: 0.0\nopenjd_status: solve 0%\nopenjd_progress: 100.0\nopenjd_status: solve 100%\n");
+}
+
+TEST(ProgressDisplay, CanBeOffAndStillStops) {
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  {
+    const auto display = make_progress_display({LogFormat::json, ProgressFormat::off});
+    display->report("total", 1);
+    std::raise(SIGTERM);
+    EXPECT_TRUE(display->cancelled());
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStdout() + testing::internal::GetCapturedStderr(), "");
+}
+
 TEST(ProgressDisplay, JsonLinesAreThrottledAndEndAtAHundred) {
   testing::internal::CaptureStdout();
   {
-    const auto display = make_progress_display(LogFormat::json);
+    const auto display = make_progress_display({LogFormat::json});
     for (int i = 0; i < 1000; ++i) {
       display->report("solve", i / 1000.0);
       display->report("total", i / 1000.0);
@@ -58,7 +89,7 @@ TEST(ProgressDisplay, JsonLinesAreThrottledAndEndAtAHundred) {
 TEST(ProgressDisplay, ALogGetsALineNowAndThen) {
   testing::internal::CaptureStderr();
   {
-    const auto display = make_progress_display(LogFormat::text);
+    const auto display = make_progress_display({LogFormat::text});
     for (const char* stage : {"solve", "solve", "cut", "solve", "cut"}) display->report(stage, 0.5);
     display->report("total", 0.25);
     display->report("total", 1);
@@ -69,7 +100,7 @@ TEST(ProgressDisplay, ALogGetsALineNowAndThen) {
 
 TEST(ProgressDisplay, SignalsCancel) {
   for (const int signal : {SIGINT, SIGTERM}) {
-    const auto display = make_progress_display(LogFormat::json);
+    const auto display = make_progress_display({LogFormat::json});
     EXPECT_FALSE(display->cancelled()) << "a new display starts afresh";
     std::raise(signal);
     EXPECT_TRUE(display->cancelled());
@@ -83,7 +114,7 @@ TEST(ProgressDisplayDeathTest, ASecondSignalEndsTheProcess) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_EXIT(
       {
-        const auto display = make_progress_display(LogFormat::json);
+        const auto display = make_progress_display({LogFormat::json});
         std::raise(SIGINT);
         std::raise(SIGINT);
       },

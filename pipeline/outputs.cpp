@@ -1,0 +1,106 @@
+#include "pipeline/outputs.h"
+
+#include <set>
+
+#include "geometry/damage_volume.h"
+#include "output/atomic_file.h"
+#include "output/writers.h"
+
+namespace sunder::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Of the files that come one a frame.
+int first_frame(const Scene& scene) { return scene.outputs.first_frame.value_or(scene.start_frame); }
+
+bool in_range(const Scene& scene, int frame) { return frame >= first_frame(scene) && frame <= last_frame(scene); }
+
+int newest_piece(const output::Sequence& sequence, std::size_t frame) {
+  const auto& poses = sequence.frames[frame].poses;
+  return poses.empty() ? -1 : poses.back().piece;
+}
+
+std::string volume_name(const Scene& scene, const FractureRecord& record) {
+  return record.body + "." + output::frame_number(frame_at(scene, record.time)) + ".vdb";
+}
+
+/// The number between `head` and `extension` of a file name; nothing when it is another file.
+std::optional<int> number_of(const fs::path& file, const std::string& head, const std::string& extension) {
+  const std::string name = file.filename().string();
+  if (name.size() <= head.size() + extension.size() || !name.starts_with(head) || !name.ends_with(extension)) return {};
+  const std::string digits = name.substr(head.size(), name.size() - head.size() - extension.size());
+  const std::size_t sign = digits[0] == '-' ? 1 : 0;
+  constexpr std::size_t kMostDigits = 9;
+  if (digits.size() == sign || digits.size() > kMostDigits ||
+      digits.find_first_not_of("0123456789", sign) != std::string::npos)
+    return {};
+  return std::stoi(digits);
+}
+
+void remove_stale_frames(const Scene& scene, const std::string& extension, const fs::path& folder) {
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::optional<int> frame = number_of(entry.path(), scene.name + ".", extension);
+    if (frame && !in_range(scene, *frame)) fs::remove(entry.path());
+  }
+}
+
+void remove_stale_solves(const Scene& scene, const Report& report, const fs::path& folder) {
+  if (!fs::is_directory(folder)) return;
+  std::set<std::string> written;
+  for (const FractureRecord& record : report.fractures) written.insert(volume_name(scene, record));
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.path().extension() == ".vdb" && !written.contains(entry.path().filename().string()))
+      fs::remove(entry.path());
+}
+
+}  // namespace
+
+std::vector<PlannedFiles> planned_files(const Scene& scene) {
+  const Outputs& outputs = scene.outputs;
+  const int frames = last_frame(scene) - first_frame(scene) + 1;
+  std::vector<PlannedFiles> files;
+  if (outputs.obj) files.push_back({scene.name + ".####.obj", frames});
+  if (outputs.obj) files.push_back({scene.name + ".mtl"});
+  if (outputs.vdb) files.push_back({"vdb/<piece>.####.vdb", 0});
+  if (outputs.glb) files.push_back({"fragments.glb"});
+  files.push_back({"scene.toml"});
+  files.push_back({"report.json"});
+  if (outputs.page) files.push_back({"index.html"});
+  return files;
+}
+
+void write_newest_frame(const Scene& scene, const output::Sequence& sequence, const fs::path& folder) {
+  const std::size_t frame = sequence.frames.size() - 1;
+  const int number = sequence.start_frame + static_cast<int>(frame);
+  if (!in_range(scene, number)) return;
+  if (!scene.outputs.obj) return;
+  output::write_obj_frame(sequence, frame, folder);
+  if (frame == 0 || number == first_frame(scene) || newest_piece(sequence, frame) > newest_piece(sequence, frame - 1))
+    output::write_obj_materials(sequence, folder);
+}
+
+void write_solve(const Scene& scene, const SettledSolve& solve, const fs::path& folder) {
+  if (!scene.outputs.vdb || !in_range(scene, frame_at(scene, solve.record.time))) return;
+  std::vector<double> damage, damage_time;
+  for (const mpm::ParticleState& particle : solve.outcome.solve.particles) {
+    damage.push_back(particle.damage);
+    damage_time.push_back(particle.damage_time);
+  }
+  const geometry::Samples& samples = solve.outcome.own->samples;
+  output::create_folder(folder / "vdb");
+  output::write_atomically(
+      folder / "vdb" / volume_name(scene, solve.record),
+      geometry::damage_volume(solve.input.mesh, {samples.points, damage, damage_time, samples.spacing}, solve.pose));
+}
+
+void write_whole_run(const Scene& scene, const output::Sequence& sequence, const fs::path& folder) {
+  if (scene.outputs.glb) output::write_glb(sequence, folder / "fragments.glb");
+}
+
+void remove_stale_files(const Scene& scene, const Report& report, const fs::path& folder) {
+  if (scene.outputs.obj) remove_stale_frames(scene, ".obj", folder);
+  if (scene.outputs.vdb) remove_stale_solves(scene, report, folder / "vdb");
+}
+
+}  // namespace sunder::pipeline

@@ -1,0 +1,33 @@
+#pragma once
+/// The commands that take a scene: `run` and `check`.
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "pipeline/progress_display.h"
+#include "pipeline/report.h"
+#include "pipeline/scene.h"
+
+namespace sunder::pipeline {
+
+struct RunArguments {
+  std::string scene, out, frames;
+  std::optional<Quality> quality;
+  std::optional<std::uint64_t> seed;
+  int threads = 0;
+  bool resume = false, dry_run = false;
+};
+
+/// Simulates, or with `dry_run` says what would be simulated and written. Returns the exit code. Errors: those of
+/// load_scene and run; ErrorKind::usage for `frames` that are no range of the scene's, ErrorKind::io for a dry run into
+/// a folder that cannot be written.
+int run_command(const RunArguments& arguments, const LogSettings& log);
+
+/// Says which effects will run and what repair does to the meshes. Errors: those of load_scene and of placing the
+/// bodies.
+int check_command(const std::string& file, const std::optional<Quality>& quality, bool json);
+
+/// One line for the terminal.
+std::string sentence(const FractureRecord& record);
+
+}  // namespace sunder::pipeline
