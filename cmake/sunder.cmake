@@ -37,6 +37,15 @@ function(sunder_module name)
   target_link_libraries(sunder_${name} PUBLIC sunder_flags ${ARG_USES} PRIVATE ${ARG_HIDES})
 endfunction()
 
+# sunder_embedded_text(module file symbol): the file's text as std::string_view sunder::<module>::detail::<symbol>, declared nowhere but
+# where it is used.
+function(sunder_embedded_text module file symbol)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${file})
+  file(READ ${PROJECT_SOURCE_DIR}/${file} text)
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/embedded_text.cpp.in ${PROJECT_BINARY_DIR}/generated/${symbol}.cpp @ONLY)
+  target_sources(sunder_${module} PRIVATE ${PROJECT_BINARY_DIR}/generated/${symbol}.cpp)
+endfunction()
+
 # sunder_test(name): every tests/<name>/*_test.cpp in one program; extra libraries follow the name. Sources of the folder
 # that are not tests serve them. Suites with Slow in their name get the label slow.
 function(sunder_test name)

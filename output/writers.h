@@ -30,4 +30,8 @@ void write_obj_piece(const Piece& piece, const std::filesystem::path& file);
 /// the viewer), and _DAMAGE_TIME on pieces with cracks. t = 0 is the first frame.
 void write_glb(const Sequence& sequence, const std::filesystem::path& file);
 
+/// dir/import_blender.py, which loads what a run has left beside it (report.json, fragments.glb or the OBJ frames,
+/// vdb/) into Blender.
+void write_blender_script(const std::filesystem::path& dir);
+
 }  // namespace sunder::output

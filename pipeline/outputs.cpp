@@ -64,6 +64,7 @@ std::vector<PlannedFiles> planned_files(const Scene& scene) {
   if (outputs.obj) files.push_back({scene.name + ".mtl"});
   if (outputs.vdb) files.push_back({"vdb/<piece>.####.vdb", 0});
   if (outputs.glb) files.push_back({"fragments.glb"});
+  if (outputs.blender) files.push_back({"import_blender.py"});
   files.push_back({"scene.toml"});
   files.push_back({"report.json"});
   if (outputs.page) files.push_back({"index.html"});
@@ -96,6 +97,7 @@ void write_solve(const Scene& scene, const SettledSolve& solve, const fs::path& 
 
 void write_whole_run(const Scene& scene, const output::Sequence& sequence, const fs::path& folder) {
   if (scene.outputs.glb) output::write_glb(sequence, folder / "fragments.glb");
+  if (scene.outputs.blender) output::write_blender_script(folder);
 }
 
 void remove_stale_files(const Scene& scene, const Report& report, const fs::path& folder) {

@@ -78,6 +78,7 @@ struct Outputs {
   bool glb = true;
   bool vdb = false;                ///< the damage of every solve
   bool page = true;                ///< index.html
+  bool blender = true;             ///< the script that loads the rest
   std::optional<int> first_frame;  ///< of the files that come one a frame; not set: the scene's
   std::optional<int> last_frame;   ///< with which the run ends; not set: the scene's
   int checkpoint_interval = 10;    ///< frames between two checkpoints; 0: only when the run is stopped

@@ -103,11 +103,12 @@ void read_format(const Value& value, Outputs& outputs) {
   outputs.*format = value.flag();
 }
 
-constexpr std::array<Key<Outputs>, 5> kOutputKeys = {{
+constexpr std::array<Key<Outputs>, 6> kOutputKeys = {{
     {"obj", read_format<&Outputs::obj>},
     {"glb", read_format<&Outputs::glb>},
     {"vdb", read_format<&Outputs::vdb>},
     {"page", read_format<&Outputs::page>},
+    {"blender", read_format<&Outputs::blender>},
     {"checkpoint_interval",
      [](const Value& value, Outputs& outputs) {
        outputs.checkpoint_interval = static_cast<int>(value.integer(0, kMaximumCount));
