@@ -26,9 +26,10 @@ function(sunder_report_page)
   sunder_node_folder(page ${PROJECT_SOURCE_DIR}/page)
   set(source ${PROJECT_BINARY_DIR}/generated/page_template.cpp)
   set(copy ${PROJECT_BINARY_DIR}/node/page)
+  set(docs ${PROJECT_SOURCE_DIR}/docs/report.md)
   add_custom_command(OUTPUT ${source}
     COMMAND ${CMAKE_COMMAND} -E make_directory ${PROJECT_BINARY_DIR}/generated
-    COMMAND ${CMAKE_COMMAND} -E chdir ${copy} ${NODE} build.mjs ${source}
-    DEPENDS ${copy}/copied COMMENT "Bundling the report page" VERBATIM)
+    COMMAND ${CMAKE_COMMAND} -E chdir ${copy} ${NODE} build.mjs ${docs} ${source}
+    DEPENDS ${copy}/copied ${docs} COMMENT "Bundling the report page" VERBATIM)
   target_sources(sunder_pipeline PRIVATE ${source})
 endfunction()

@@ -1,5 +1,6 @@
-// node build.mjs OUTPUT.cpp: bundles the page into one HTML template and writes it as the source of
-// sunder::pipeline::detail::page_template (pipeline/detail/page_template.h).
+// node build.mjs DOCS OUTPUT.cpp: bundles the page into one HTML template and writes it as the source of
+// sunder::pipeline::detail::page_template (pipeline/detail/page_template.h). DOCS is docs/report.md: the page says what a
+// fallback means in its words.
 import { readFile, writeFile } from "node:fs/promises";
 import { build } from "esbuild";
 
@@ -12,9 +13,20 @@ async function bundle(entry, options) {
   return result.outputFiles[0].text;
 }
 
-async function html() {
-  const script = await bundle("src/main.js", { format: "iife", target: "es2021", legalComments: "inline" });
-  const style = await bundle("src/style.css", { target: "chrome100" });
+// { name: meaning } from the table of the section "Fallbacks"; a row may name several.
+function fallbacks(markdown) {
+  const section = markdown.split("\n## ").find((part) => part.startsWith("Fallbacks"));
+  const meanings = {};
+  for (const [, names, meaning] of section.matchAll(/^\| (`.*) \| (.*) \|$/gm))
+    for (const [, name] of names.matchAll(/`(\w+)`/g)) meanings[name] = meaning.replaceAll("`", "");
+  if (Object.keys(meanings).length === 0) throw new Error("no fallbacks found in docs/report.md");
+  return meanings;
+}
+
+async function html(docs) {
+  const define = { FALLBACKS: JSON.stringify(fallbacks(await readFile(docs, "utf8"))) };
+  const script = await bundle("src/main.js", { format: "iife", target: "es2022", legalComments: "inline", define });
+  const style = await bundle("src/style/page.css", { target: "chrome100" });
   const template = await readFile("src/index.html", "utf8");
   // A function: in a string `$&` and its like would be replaced.
   return template
@@ -50,4 +62,5 @@ ${literals.join(",\n")}};
 `;
 }
 
-await writeFile(process.argv[2], source(split(await html())));
+const [docs, output] = process.argv.slice(2);
+await writeFile(output, source(split(await html(docs))));
