@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <set>
 #include <span>
 #include <sstream>
 #include <string>
@@ -11,6 +13,7 @@
 #include "output/detail/look.h"
 #include "output/detail/sequence_checks.h"
 #include "output/detail/tracks.h"
+#include "output/detail/vertex_arrays.h"
 #include "output/writers.h"
 
 #define TINYGLTF_IMPLEMENTATION
@@ -35,11 +38,21 @@ struct View {
   int index = -1;  // in the file; given at the first use, so that an unused view never appears
 };
 
+// A white pixel as PNG (grey, 8 bits). Where a surface has texture coordinates its material has this texture: a place
+// for the artist's own, and without a texture validators call the coordinates unused.
+constexpr std::array<unsigned char, 67> kWhitePixel = {
+    0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44, 0x52, 0x00,
+    0x00, 0x00, 0x01, 0x00, 0x00, 0x00, 0x01, 0x08, 0x00, 0x00, 0x00, 0x00, 0x3a, 0x7e, 0x9b, 0x55, 0x00,
+    0x00, 0x00, 0x0a, 0x49, 0x44, 0x41, 0x54, 0x78, 0xda, 0x63, 0xf8, 0x0f, 0x00, 0x01, 0x01, 0x01, 0x00,
+    0x1c, 0xb0, 0x8c, 0x99, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
+
 class Builder {
  public:
   explicit Builder(const Sequence& sequence) : sequence_(sequence) {
-    positions_.target = TINYGLTF_TARGET_ARRAY_BUFFER;
-    positions_.stride = 3 * sizeof(float);
+    for (View* view : {&positions_, &normals_, &uvs_, &damage_times_}) view->target = TINYGLTF_TARGET_ARRAY_BUFFER;
+    positions_.stride = normals_.stride = 3 * sizeof(float);
+    uvs_.stride = 2 * sizeof(float);
+    damage_times_.stride = sizeof(float);
     indices_.target = TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER;
   }
 
@@ -47,6 +60,7 @@ class Builder {
     model_.asset.version = "2.0";
     model_.asset.generator = "Sunder";
     const std::vector<detail::Track> tracks = detail::tracks(sequence_);
+    textured_ = textured_materials(sequence_);
     model_.scenes.resize(1);
     model_.scenes[0].name = sequence_.name;
     model_.defaultScene = 0;
@@ -57,6 +71,30 @@ class Builder {
   }
 
  private:
+  static std::set<std::string> textured_materials(const Sequence& sequence) {
+    std::set<std::string> names;
+    for (const Piece& piece : sequence.pieces)
+      for (const auto& [material, faces] : detail::faces_by_material(piece))
+        if (detail::has_texture(piece, faces))
+          names.insert(piece.surface.material_names[static_cast<std::size_t>(material)]);
+    return names;
+  }
+
+  int white_texture() {
+    if (!model_.textures.empty()) return 0;
+    image_.bytes.assign(kWhitePixel.begin(), kWhitePixel.end());
+    image_.index = view_count_++;
+    tinygltf::Image image;
+    image.name = "white";
+    image.mimeType = "image/png";
+    image.bufferView = image_.index;
+    model_.images.push_back(image);
+    tinygltf::Texture texture;
+    texture.source = 0;
+    model_.textures.push_back(texture);
+    return 0;
+  }
+
   // Added when first used: validators complain of materials that nothing wears.
   int material(const std::string& name, const std::string& substance) {
     const auto [entry, is_new] = material_index_.try_emplace(name, static_cast<int>(model_.materials.size()));
@@ -67,6 +105,7 @@ class Builder {
     added.pbrMetallicRoughness.baseColorFactor = {look.colour[0], look.colour[1], look.colour[2], 1};
     added.pbrMetallicRoughness.metallicFactor = look.metallic;
     added.pbrMetallicRoughness.roughnessFactor = look.roughness;
+    if (textured_.contains(name)) added.pbrMetallicRoughness.baseColorTexture.index = white_texture();
     model_.materials.push_back(added);
     return entry->second;
   }
@@ -88,12 +127,12 @@ class Builder {
     return static_cast<int>(model_.accessors.size()) - 1;
   }
 
-  int add_positions(const geometry::TriangleMesh& mesh) {
+  int add_positions(const geometry::TriangleMesh& mesh, const std::vector<int>& vertices) {
     std::vector<float> values;
-    values.reserve(3 * mesh.vertices.size());
+    values.reserve(3 * vertices.size());
     Eigen::AlignedBox3f box;
-    for (const Vec3& vertex : mesh.vertices) {
-      const Eigen::Vector3f x = vertex.cast<float>();
+    for (const int vertex : vertices) {
+      const Eigen::Vector3f x = mesh.vertices[static_cast<std::size_t>(vertex)].cast<float>();
       box.extend(x);
       values.insert(values.end(), x.data(), x.data() + 3);
     }
@@ -105,25 +144,36 @@ class Builder {
   }
 
   template <class Index>
-  int add_indices(const Piece& piece, const std::vector<int>& faces, int component) {
-    std::vector<Index> values;
-    values.reserve(3 * faces.size());
-    for (const int f : faces) {
-      const geometry::Triangle& face = piece.mesh.faces[static_cast<std::size_t>(f)];
-      values.insert(values.end(), face.begin(), face.end());
-    }
+  int add_indices(const std::vector<std::uint32_t>& corners, int component) {
+    const std::vector<Index> values(corners.begin(), corners.end());
     return add_accessor<Index>(indices_, values, component, TINYGLTF_TYPE_SCALAR, 1);
   }
 
-  void add_primitive(tinygltf::Mesh& mesh, const Piece& piece, int positions, const detail::MaterialFaces& group) {
+  void add_attributes(tinygltf::Primitive& primitive, detail::VertexArrays& arrays) {
+    constexpr int kFloat = TINYGLTF_COMPONENT_TYPE_FLOAT;
+    if (!arrays.normal.empty())
+      primitive.attributes["NORMAL"] =
+          add_accessor<float>(normals_, flat(arrays.normal), kFloat, TINYGLTF_TYPE_VEC3, 3);
+    if (!arrays.uv.empty()) {
+      for (auto& uv : arrays.uv) uv[1] = 1 - uv[1];  // glTF's v points down the picture
+      primitive.attributes["TEXCOORD_0"] = add_accessor<float>(uvs_, flat(arrays.uv), kFloat, TINYGLTF_TYPE_VEC2, 2);
+    }
+    if (!arrays.damage_time.empty())
+      primitive.attributes["_DAMAGE_TIME"] =
+          add_accessor<float>(damage_times_, arrays.damage_time, kFloat, TINYGLTF_TYPE_SCALAR, 1);
+  }
+
+  void add_primitive(tinygltf::Mesh& mesh, const Piece& piece, const detail::MaterialFaces& group) {
+    const std::string& name = piece.surface.material_names[static_cast<std::size_t>(group.material)];
+    detail::VertexArrays arrays = detail::vertex_arrays(piece, group.faces, textured_.contains(name));
     tinygltf::Primitive primitive;
-    primitive.attributes["POSITION"] = positions;
+    primitive.attributes["POSITION"] = add_positions(piece.mesh, arrays.vertex);
+    add_attributes(primitive, arrays);
     // 65535 itself is reserved (primitive restart).
-    primitive.indices = piece.mesh.vertices.size() <= 65535
-                            ? add_indices<std::uint16_t>(piece, group.faces, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT)
-                            : add_indices<std::uint32_t>(piece, group.faces, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT);
-    primitive.material =
-        material(piece.surface.material_names[static_cast<std::size_t>(group.material)], piece.material);
+    primitive.indices = arrays.vertex.size() <= 65535
+                            ? add_indices<std::uint16_t>(arrays.corner, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT)
+                            : add_indices<std::uint32_t>(arrays.corner, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT);
+    primitive.material = material(name, piece.material);
     primitive.mode = TINYGLTF_MODE_TRIANGLES;
     mesh.primitives.push_back(primitive);
   }
@@ -133,22 +183,26 @@ class Builder {
     if (piece.mesh.faces.empty()) return -1;
     tinygltf::Mesh mesh;
     mesh.name = piece.name;
-    const int positions = add_positions(piece.mesh);
-    for (const detail::MaterialFaces& group : detail::faces_by_material(piece))
-      add_primitive(mesh, piece, positions, group);
+    for (const detail::MaterialFaces& group : detail::faces_by_material(piece)) add_primitive(mesh, piece, group);
     model_.meshes.push_back(mesh);
     return static_cast<int>(model_.meshes.size()) - 1;
   }
 
-  static tinygltf::Value extras(const Piece& piece) {
+  tinygltf::Value extras(const Piece& piece) const {
     using tinygltf::Value;
-    Value::Object object = {{"id", Value(piece.id)},
-                            {"body", Value(piece.body)},
-                            {"parent", Value(piece.parent)},
-                            {"generation", Value(piece.generation)},
-                            {"birth_time", Value(piece.birth_time)},
-                            {"volume", Value(piece.volume)},
-                            {"mass", Value(piece.mass)}};
+    Value::Object object = {
+        {"id", Value(piece.id)},
+        {"body", Value(piece.body)},
+        {"parent", Value(piece.parent)},
+        {"generation", Value(piece.generation)},
+        {"birth_time", Value(piece.birth_time)},
+        {"birth_frame", Value(frame_at(piece.birth_time, sequence_.frame_rate, sequence_.start_frame))},
+        {"material", Value(piece.material)},
+        {"volume", Value(piece.volume)},
+        {"mass", Value(piece.mass)},
+        {"area", Value(piece.area)},
+        {"inside_area", Value(piece.inside_area)},
+        {"closed", Value(piece.closed)}};
     if (std::isfinite(piece.death_time)) object["death_time"] = Value(piece.death_time);
     return Value(object);
   }
@@ -171,17 +225,28 @@ class Builder {
   }
 
   void animate(int node, const detail::Track& track) {
-    if (varies(track.translations)) {
-      add_channel(node, "translation", track.times, flat(track.translations), TINYGLTF_TYPE_VEC3, 3, "LINEAR");
-    }
-    if (varies(track.rotations)) {
-      add_channel(node, "rotation", track.times, flat(track.rotations), TINYGLTF_TYPE_VEC4, 4, "LINEAR");
-    }
+    add_motion(node, "translation", track.times, track.translations, TINYGLTF_TYPE_VEC3);
+    add_motion(node, "rotation", track.times, track.rotations, TINYGLTF_TYPE_VEC4);
     if (varies(track.visible)) {
       std::vector<float> scales;
       for (const float visible : track.visible) scales.insert(scales.end(), 3, visible);
       add_channel(node, "scale", track.switch_times, scales, TINYGLTF_TYPE_VEC3, 3, "STEP");
     }
+  }
+
+  // What lies between two equal keys is the same however it is interpolated: only the ends of a rest are written.
+  template <class Value>
+  void add_motion(int node, const char* path, const std::vector<float>& times, const std::vector<Value>& values,
+                  int type) {
+    if (!varies(values)) return;
+    std::vector<float> kept_times;
+    std::vector<Value> kept;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (i > 0 && i + 1 < values.size() && values[i] == values[i - 1] && values[i] == values[i + 1]) continue;
+      kept_times.push_back(times[i]);
+      kept.push_back(values[i]);
+    }
+    add_channel(node, path, kept_times, flat(kept), type, std::tuple_size_v<Value>, "LINEAR");
   }
 
   template <class Values>
@@ -192,6 +257,7 @@ class Builder {
   template <class Array>
   static std::vector<float> flat(const std::vector<Array>& values) {
     std::vector<float> result;
+    result.reserve(values.size() * std::tuple_size_v<Array>);
     for (const Array& value : values) result.insert(result.end(), value.begin(), value.end());
     return result;
   }
@@ -224,7 +290,7 @@ class Builder {
   void finish_buffer() {
     model_.bufferViews.resize(static_cast<std::size_t>(view_count_));
     tinygltf::Buffer buffer;
-    for (const View* view : {&positions_, &indices_, &motion_}) {
+    for (const View* view : {&positions_, &normals_, &uvs_, &damage_times_, &indices_, &motion_, &image_}) {
       if (view->index < 0) continue;
       tinygltf::BufferView& target = model_.bufferViews[static_cast<std::size_t>(view->index)];
       target.buffer = 0;
@@ -240,8 +306,9 @@ class Builder {
   const Sequence& sequence_;
   tinygltf::Model model_;
   tinygltf::Animation animation_;
-  View positions_, indices_, motion_;
+  View positions_, normals_, uvs_, damage_times_, indices_, motion_, image_;
   int view_count_ = 0;
+  std::set<std::string> textured_;  // names of materials
   std::map<std::string, int> material_index_;
   std::map<std::vector<float>, int> times_index_;
 };

@@ -1,5 +1,6 @@
-#include <array>
-#include <charconv>
+#include <cstdio>
+#include <cstdlib>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -8,87 +9,111 @@
 #include "output/atomic_file.h"
 #include "output/detail/look.h"
 #include "output/detail/sequence_checks.h"
+#include "output/detail/text_buffer.h"
+#include "output/detail/vertex_arrays.h"
 #include "output/writers.h"
 
 namespace sunder::output {
 namespace {
 
-// 9 significant digits: what a reader with single precision needs to get every bit of it.
-enum class Digits { nine, all };
+using detail::Digits;
+using detail::TextBuffer;
 
-// Text that grows at its end; numbers go straight into it.
-class TextBuffer {
- public:
-  explicit TextBuffer(std::size_t capacity, Digits digits = Digits::nine) : digits_(digits) { text_.reserve(capacity); }
-
-  TextBuffer& operator<<(std::string_view text) {
-    text_.append(text);
-    return *this;
-  }
-  TextBuffer& operator<<(long value) { return append(value); }
-  TextBuffer& operator<<(double value) {
-    return digits_ == Digits::all ? append(value) : append(value, std::chars_format::general, 9);
-  }
-
-  const std::string& text() const { return text_; }
-
- private:
-  template <class... Arguments>
-  TextBuffer& append(Arguments... arguments) {
-    std::array<char, 32> digits;
-    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), arguments...).ptr;
-    text_.append(digits.data(), end);
-    return *this;
-  }
-
-  Digits digits_;
-  std::string text_;
+// OBJ counts positions, texture coordinates and normals of a whole file, each from 1.
+struct Numbers {
+  long position = 1, uv = 1, normal = 1;
 };
 
-void append_faces(TextBuffer& out, const Piece& piece, long first) {
-  for (const auto& [material, faces] : detail::faces_by_material(piece)) {
-    out << "usemtl " << piece.surface.material_names[static_cast<std::size_t>(material)] << "\n";
-    for (const int face : faces) {
-      const auto& [a, b, c] = piece.mesh.faces[static_cast<std::size_t>(face)];
-      out << "f " << first + a << " " << first + b << " " << first + c << "\n";
+// Faces of one material with what they carry.
+struct Group {
+  std::string_view material;
+  detail::VertexArrays arrays;
+};
+
+struct ObjPiece {
+  const Piece* piece = nullptr;
+  std::vector<Group> groups;
+
+  explicit ObjPiece(const Piece& source) : piece(&source) {
+    for (const auto& [material, faces] : detail::faces_by_material(source))
+      groups.push_back({source.surface.material_names[static_cast<std::size_t>(material)],
+                        detail::vertex_arrays(source, faces, detail::has_texture(source, faces))});
+  }
+
+  // Those of what follows the piece.
+  Numbers after(Numbers first) const {
+    first.position += static_cast<long>(piece->mesh.vertices.size());
+    for (const Group& group : groups) {
+      first.uv += static_cast<long>(group.arrays.uv.size());
+      first.normal += static_cast<long>(group.arrays.normal.size());
     }
+    return first;
+  }
+
+  std::size_t estimated_size() const {
+    std::size_t size = 200 + 70 * piece->mesh.vertices.size() + 24 * piece->mesh.faces.size();
+    for (const auto& [material, arrays] : groups)
+      size += 24 * arrays.uv.size() + 40 * arrays.normal.size() + 12 * arrays.corner.size();
+    return size;
+  }
+};
+
+void append_faces(TextBuffer& out, const Group& group, const Numbers& first) {
+  const detail::VertexArrays& arrays = group.arrays;
+  const bool uv = !arrays.uv.empty(), normal = !arrays.normal.empty();
+  out << "usemtl " << group.material << "\n";
+  for (std::size_t c = 0; c < arrays.corner.size(); ++c) {
+    const long corner = arrays.corner[c];
+    out << (c % 3 == 0 ? "f " : " ") << first.position + arrays.vertex[static_cast<std::size_t>(corner)];
+    if (uv) out << "/" << first.uv + corner;
+    if (normal) out << (uv ? "/" : "//") << first.normal + corner;
+    if (c % 3 == 2) out << "\n";
   }
 }
 
-// `first` is the OBJ number of the piece's first vertex; OBJ counts all vertices of a file from 1.
-void append_piece(TextBuffer& out, const Piece& piece, const Pose& pose, long first) {
-  out << "o " << piece.name << "\n";
+void append_piece(TextBuffer& out, const ObjPiece& source, const Pose& pose, Numbers first) {
+  out << "o " << source.piece->name << "\n";
   const Mat3 rotation = pose.orientation.toRotationMatrix();
-  for (const Vec3& vertex : piece.mesh.vertices) {
+  for (const Vec3& vertex : source.piece->mesh.vertices) {
     const Vec3 x = rotation * vertex + pose.position;
     out << "v " << x.x() << " " << x.y() << " " << x.z() << "\n";
   }
-  append_faces(out, piece, first);
-}
-
-std::size_t estimated_size(const geometry::TriangleMesh& mesh) {
-  return 200 + 45 * mesh.vertices.size() + 24 * mesh.faces.size();
+  for (const auto& [material, arrays] : source.groups) {
+    for (const auto& [u, v] : arrays.uv) out << "vt " << u << " " << v << "\n";
+    for (const auto& n : arrays.normal) {
+      const Eigen::Vector3f turned = (rotation * Vec3(n[0], n[1], n[2])).cast<float>();
+      out << "vn " << turned.x() << " " << turned.y() << " " << turned.z() << "\n";
+    }
+  }
+  for (const Group& group : source.groups) {
+    append_faces(out, group, first);
+    first.uv += static_cast<long>(group.arrays.uv.size());
+    first.normal += static_cast<long>(group.arrays.normal.size());
+  }
 }
 
 std::string frame_text(const Sequence& sequence, const Frame& frame) {
   detail::require_finite(sequence, frame);
-  std::vector<const Piece*> pieces;
-  std::vector<long> first = {1};
-  for (const PiecePose& pose : frame.poses) {
-    pieces.push_back(&sequence.pieces.at(static_cast<std::size_t>(pose.piece)));
-    first.push_back(first.back() + static_cast<long>(pieces.back()->mesh.vertices.size()));
-  }
-  std::vector<std::string> texts(pieces.size());
-  tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t k) {
-    TextBuffer out(estimated_size(pieces[k]->mesh));
-    append_piece(out, *pieces[k], frame.poses[k].pose, first[k]);
-    texts[k] = out.text();
+  const std::size_t count = frame.poses.size();
+  std::vector<std::optional<ObjPiece>> pieces(count);
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
+    pieces[k].emplace(sequence.pieces.at(static_cast<std::size_t>(frame.poses[k].piece)));
   });
-  TextBuffer out(1000);
+  std::vector<Numbers> first(1);
+  for (const auto& piece : pieces) first.push_back(piece->after(first.back()));
+  std::vector<std::string> texts(count);
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
+    TextBuffer out(pieces[k]->estimated_size());
+    append_piece(out, *pieces[k], frame.poses[k].pose, first[k]);
+    texts[k] = out.take();
+  });
+  std::size_t size = 200;
+  for (const std::string& text : texts) size += text.size();
+  TextBuffer out(size);
   out << "# " << sequence.name << ", " << frame.time << " s; metres, Y up\n";
   out << "mtllib " << sequence.name << ".mtl\ns off\n";
   for (const std::string& text : texts) out << text;
-  return out.text();
+  return out.take();
 }
 
 void append_material(TextBuffer& out, std::string_view name, const detail::Look& look) {
@@ -101,21 +126,22 @@ std::string material_text(const Sequence& sequence) {
   TextBuffer out(1000);
   for (const auto& [name, substance] : detail::surface_materials(sequence))
     append_material(out, name, detail::look_of(name, substance));
-  return out.text();
+  return out.take();
 }
 
 }  // namespace
 
 std::string frame_number(long number) {
-  const std::string digits = std::to_string(number);
-  return std::string(digits.size() < 4 ? 4 - digits.size() : 0, '0') + digits;
+  char text[32];
+  std::snprintf(text, sizeof text, "%s%04ld", number < 0 ? "-" : "", std::abs(number));
+  return text;
 }
 
 void write_obj_piece(const Piece& piece, const std::filesystem::path& file) {
-  TextBuffer out(200 + 70 * piece.mesh.vertices.size() + 24 * piece.mesh.faces.size(), Digits::all);
-  out << "# metres, Y up\no " << piece.name << "\n";
-  for (const Vec3& x : piece.mesh.vertices) out << "v " << x.x() << " " << x.y() << " " << x.z() << "\n";
-  append_faces(out, piece, 1);
+  const ObjPiece source(piece);
+  TextBuffer out(source.estimated_size(), Digits::all);
+  out << "# metres, Y up\n";
+  append_piece(out, source, {}, {});
   write_atomically(file, out.text());
 }
 

@@ -51,6 +51,9 @@ struct Sequence {
   std::vector<Frame> frames;
 };
 
+/// Number of the first frame at or after a time.
+int frame_at(double time, double frame_rate, int start_frame);
+
 /// "bunny_0007".
 std::string fragment_name(const std::string& body, int number);
 

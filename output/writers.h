@@ -9,12 +9,12 @@
 
 namespace sunder::output {
 
-/// "0012" for 12: frame numbers in file names have four digits or more.
+/// "0012" for 12, "-0003" for -3: frame numbers in file names have four digits or more.
 std::string frame_number(long number);
 
-/// One frame as Wavefront OBJ: `o` per piece, `usemtl` by the surface's materials, `vt` where there is texture, 9
-/// significant digits. File: dir/<name>.<frame number>.obj. Also writes the material file dir/<name>.mtl with the first
-/// frame.
+/// One frame as Wavefront OBJ: `o` per piece, `usemtl` by the surface's materials, `vt` where there is texture, `vn`
+/// where the surface has normals, 9 significant digits. File: dir/<name>.<frame number>.obj. Also writes the material
+/// file dir/<name>.mtl with the first frame.
 void write_obj_frame(const Sequence& sequence, std::size_t frame, const std::filesystem::path& dir);
 
 /// dir/<name>.mtl with the materials of all pieces so far.
@@ -24,10 +24,25 @@ void write_obj_materials(const Sequence& sequence, const std::filesystem::path& 
 /// in the file. Materials as above.
 void write_obj_piece(const Piece& piece, const std::filesystem::path& file);
 
+/// One frame as binary PLY, all pieces in one mesh. Per vertex: x, y, z, `piece` (id), `damage_time` (the latest of the
+/// corners there [s], -1: none). Per face: `piece`, `source_face` (of the scene's body, -1: on a crack), `inside`,
+/// and the colour of its material (sRGB). Comments name the pieces. File: dir/<name>.<frame number>.ply.
+void write_ply_frame(const Sequence& sequence, std::size_t frame, const std::filesystem::path& dir);
+
+/// A row or a line for every pose: frame number, time [s], id, name, position [m], orientation (quaternion x, y, z, w),
+/// velocity [m/s] and angular velocity about the world's axes [rad/s]. Every digit.
+void write_transforms_csv(const Sequence& sequence, const std::filesystem::path& file);
+void write_transforms_jsonl(const Sequence& sequence, const std::filesystem::path& file);
+
+/// All of the sequence as USD text: an Xform with a Mesh for each piece, once, with translate and orient sampled at the
+/// frames where it is alive, visibility, materials by GeomSubset, primvars st, damage_time and source_face, and
+/// `sunder:` attributes for where it comes from and how fast it moves. Time codes are frame numbers.
+void write_usda(const Sequence& sequence, const std::filesystem::path& file);
+
 /// All of the sequence as binary glTF 2.0: each piece once, a primitive per material, node translation and rotation
 /// sampled at the frames, scale 0 before birth and after death by STEP, `extras` with id, body, parent, generation,
-/// birth time, volume, mass. Attributes: what the surface has of TEXCOORD_0 and NORMAL (else flat normals are left to
-/// the viewer), and _DAMAGE_TIME on pieces with cracks. t = 0 is the first frame.
+/// birth time and frame, material, volume, mass, areas, closed. Attributes: what the surface has of TEXCOORD_0 and
+/// NORMAL (else flat normals are left to the viewer), and _DAMAGE_TIME on crack faces. t = 0 is the first frame.
 void write_glb(const Sequence& sequence, const std::filesystem::path& file);
 
 /// dir/import_blender.py, which loads what a run has left beside it (report.json, fragments.glb or the OBJ frames,

@@ -21,8 +21,10 @@ int newest_piece(const output::Sequence& sequence, std::size_t frame) {
   return poses.empty() ? -1 : poses.back().piece;
 }
 
+int frame_of(const Scene& scene, double time) { return output::frame_at(time, scene.frame_rate, scene.start_frame); }
+
 std::string volume_name(const Scene& scene, const FractureRecord& record) {
-  return record.body + "." + output::frame_number(frame_at(scene, record.time)) + ".vdb";
+  return record.body + "." + output::frame_number(frame_of(scene, record.time)) + ".vdb";
 }
 
 /// The number between `head` and `extension` of a file name; nothing when it is another file.
@@ -54,6 +56,14 @@ void remove_stale_solves(const Scene& scene, const Report& report, const fs::pat
       fs::remove(entry.path());
 }
 
+bool wants_csv(const Outputs& outputs) {
+  return outputs.transforms == TransformTable::csv || outputs.transforms == TransformTable::both;
+}
+
+bool wants_jsonl(const Outputs& outputs) {
+  return outputs.transforms == TransformTable::jsonl || outputs.transforms == TransformTable::both;
+}
+
 }  // namespace
 
 std::vector<PlannedFiles> planned_files(const Scene& scene) {
@@ -62,8 +72,12 @@ std::vector<PlannedFiles> planned_files(const Scene& scene) {
   std::vector<PlannedFiles> files;
   if (outputs.obj) files.push_back({scene.name + ".####.obj", frames});
   if (outputs.obj) files.push_back({scene.name + ".mtl"});
+  if (outputs.ply) files.push_back({scene.name + ".####.ply", frames});
   if (outputs.vdb) files.push_back({"vdb/<piece>.####.vdb", 0});
   if (outputs.glb) files.push_back({"fragments.glb"});
+  if (outputs.usd) files.push_back({"fragments.usda"});
+  if (wants_csv(outputs)) files.push_back({"transforms.csv"});
+  if (wants_jsonl(outputs)) files.push_back({"transforms.jsonl"});
   if (outputs.blender) files.push_back({"import_blender.py"});
   files.push_back({"scene.toml"});
   files.push_back({"report.json"});
@@ -75,6 +89,7 @@ void write_newest_frame(const Scene& scene, const output::Sequence& sequence, co
   const std::size_t frame = sequence.frames.size() - 1;
   const int number = sequence.start_frame + static_cast<int>(frame);
   if (!in_range(scene, number)) return;
+  if (scene.outputs.ply) output::write_ply_frame(sequence, frame, folder);
   if (!scene.outputs.obj) return;
   output::write_obj_frame(sequence, frame, folder);
   if (frame == 0 || number == first_frame(scene) || newest_piece(sequence, frame) > newest_piece(sequence, frame - 1))
@@ -82,7 +97,7 @@ void write_newest_frame(const Scene& scene, const output::Sequence& sequence, co
 }
 
 void write_solve(const Scene& scene, const SettledSolve& solve, const fs::path& folder) {
-  if (!scene.outputs.vdb || !in_range(scene, frame_at(scene, solve.record.time))) return;
+  if (!scene.outputs.vdb || !in_range(scene, frame_of(scene, solve.record.time))) return;
   std::vector<double> damage, damage_time;
   for (const mpm::ParticleState& particle : solve.outcome.solve.particles) {
     damage.push_back(particle.damage);
@@ -97,11 +112,15 @@ void write_solve(const Scene& scene, const SettledSolve& solve, const fs::path& 
 
 void write_whole_run(const Scene& scene, const output::Sequence& sequence, const fs::path& folder) {
   if (scene.outputs.glb) output::write_glb(sequence, folder / "fragments.glb");
+  if (scene.outputs.usd) output::write_usda(sequence, folder / "fragments.usda");
+  if (wants_csv(scene.outputs)) output::write_transforms_csv(sequence, folder / "transforms.csv");
+  if (wants_jsonl(scene.outputs)) output::write_transforms_jsonl(sequence, folder / "transforms.jsonl");
   if (scene.outputs.blender) output::write_blender_script(folder);
 }
 
 void remove_stale_files(const Scene& scene, const Report& report, const fs::path& folder) {
   if (scene.outputs.obj) remove_stale_frames(scene, ".obj", folder);
+  if (scene.outputs.ply) remove_stale_frames(scene, ".ply", folder);
   if (scene.outputs.vdb) remove_stale_solves(scene, report, folder / "vdb");
 }
 

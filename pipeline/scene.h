@@ -72,10 +72,15 @@ struct FractureSettings {
   double voxel_size = 0;       ///< of that grid [m]; 0: 1/150 of the body's diagonal
 };
 
+enum class TransformTable { off, csv, jsonl, both };
+
 /// What a run writes beside its report; docs/outputs.md describes every file.
 struct Outputs {
   bool obj = true;
+  bool ply = false;
   bool glb = true;
+  bool usd = false;
+  TransformTable transforms = TransformTable::off;
   bool vdb = false;                ///< the damage of every solve
   bool page = true;                ///< index.html
   bool blender = true;             ///< the script that loads the rest
@@ -102,9 +107,6 @@ struct Scene {
 
 /// Number of the last frame: frames are at multiples of 1 / frame_rate up to the duration, unless outputs end earlier.
 int last_frame(const Scene& scene);
-
-/// Number of the first frame at or after a time.
-int frame_at(const Scene& scene, double time);
 
 /// Where named things live.
 struct AssetPaths {

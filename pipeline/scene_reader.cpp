@@ -103,9 +103,19 @@ void read_format(const Value& value, Outputs& outputs) {
   outputs.*format = value.flag();
 }
 
-constexpr std::array<Key<Outputs>, 6> kOutputKeys = {{
+void read_transforms(const Value& value, Outputs& outputs) {
+  using enum TransformTable;
+  constexpr std::array<std::pair<std::string_view, TransformTable>, 4> kTables = {
+      {{"off", off}, {"csv", csv}, {"jsonl", jsonl}, {"both", both}}};
+  outputs.transforms = value.word<TransformTable>(kTables);
+}
+
+constexpr std::array<Key<Outputs>, 9> kOutputKeys = {{
     {"obj", read_format<&Outputs::obj>},
+    {"ply", read_format<&Outputs::ply>},
     {"glb", read_format<&Outputs::glb>},
+    {"usd", read_format<&Outputs::usd>},
+    {"transforms", read_transforms},
     {"vdb", read_format<&Outputs::vdb>},
     {"page", read_format<&Outputs::page>},
     {"blender", read_format<&Outputs::blender>},
@@ -252,10 +262,6 @@ std::vector<SectionKeys> scene_keys() {
 int last_frame(const Scene& scene) {
   const int last = scene.start_frame + static_cast<int>(std::floor(scene.duration * scene.frame_rate + 1e-9));
   return std::min(last, scene.outputs.last_frame.value_or(last));
-}
-
-int frame_at(const Scene& scene, double time) {
-  return scene.start_frame + static_cast<int>(std::ceil(time * scene.frame_rate - 1e-9));
 }
 
 AssetPaths default_assets() {

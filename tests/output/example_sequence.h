@@ -22,6 +22,23 @@ inline Piece example_piece(int id, const std::string& name, int parent) {
   return piece;
 }
 
+/// The same tetrahedron as a fragment that carries everything: texture and normals of the body, a crack face with
+/// damage times.
+inline Piece attributed_piece(int id, const std::string& name, int parent) {
+  Piece piece = example_piece(id, name, parent);
+  geometry::SurfaceAttributes& surface = piece.surface;
+  for (std::size_t f = 0; f < piece.mesh.faces.size(); ++f) {
+    const auto& [a, b, c] = piece.mesh.faces[f];
+    const auto at = [&](int v) -> const Vec3& { return piece.mesh.vertices[static_cast<std::size_t>(v)]; };
+    const Vec3 normal = (at(b) - at(a)).cross(at(c) - at(a)).normalized();
+    surface.normal.push_back({normal, normal, normal});
+    surface.uv.push_back({geometry::Uv(0, 0), geometry::Uv(0.75, 0.1), geometry::Uv(0.5, 1)});
+    const double time = piece.inside(f) ? 1e-4 : -1;
+    surface.damage_time.push_back({time, time, piece.inside(f) ? 2e-4 : -1});
+  }
+  return piece;
+}
+
 inline Sequence example_sequence() {
   Sequence sequence;
   sequence.name = "example";
@@ -37,6 +54,18 @@ inline Sequence example_sequence() {
     const Pose flipped{Vec3(0, 1, 0), i % 2 ? pose.orientation : Quat(-pose.orientation.coeffs())};
     if (i < 2) sequence.frames.push_back({time, {{0, pose, {}}}});
     if (i >= 2) sequence.frames.push_back({time, {{1, pose, {}}, {2, flipped, {}}}});
+  }
+  return sequence;
+}
+
+/// The example with pieces that carry everything.
+inline Sequence attributed_sequence() {
+  Sequence sequence = example_sequence();
+  for (Piece& piece : sequence.pieces) {
+    Piece attributed = attributed_piece(piece.id, piece.name, piece.parent);
+    attributed.birth_time = piece.birth_time;
+    attributed.death_time = piece.death_time;
+    piece = std::move(attributed);
   }
   return sequence;
 }

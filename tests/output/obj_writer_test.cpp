@@ -103,5 +103,25 @@ TEST(ObjWriter, MissingFolderIsAnIoError) {
   }
 }
 
+TEST(ObjWriter, CarriesTextureAndNormalsPerCorner) {
+  const ScratchFolder folder;
+  const Sequence sequence = attributed_sequence();
+  write_obj_frame(sequence, 3, folder.path());
+  const std::string text = read_all(folder / "example.0011.obj");
+  EXPECT_EQ(count(text, "\nvt "), 24) << "two pieces of four faces with corners of their own";
+  EXPECT_EQ(count(text, "\nvn "), 24);
+  EXPECT_NE(text.find("\nvt 0.75 0.1\n"), std::string::npos) << "v points up";
+  EXPECT_NE(text.find("\nf 1/10/10 3/11/11 2/12/12\n"), std::string::npos) << "the crack face comes last";
+  EXPECT_NE(text.find("\nf 5/22/22 7/23/23 6/24/24\n"), std::string::npos);
+  // The crack face's normal -Z turns with the piece about Z; that of a side does not stay.
+  EXPECT_EQ(count(text, "\nvn 0 0 -1\n") + count(text, "\nvn -0 0 -1\n") + count(text, "\nvn 0 -0 -1\n"), 6);
+}
+
+TEST(ObjWriter, PadsNumbersBehindTheSign) {
+  EXPECT_EQ(frame_number(7), "0007");
+  EXPECT_EQ(frame_number(-7), "-0007");
+  EXPECT_EQ(frame_number(123456), "123456");
+}
+
 }  // namespace
 }  // namespace sunder::output

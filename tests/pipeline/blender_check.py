@@ -25,6 +25,9 @@ check(sorted(p.name for p in pieces) == sorted(expected["pieces"]), "names of pi
 for name, piece in expected["pieces"].items():
     check(pieces[name]["parent"] == piece["parent"], name + ": parent")
     check(len(pieces[name].data.polygons) == piece["faces"], name + ": faces")
+    if piece["parent"] >= 0:
+        times = [value.value for value in pieces[name].data.attributes["damage_time"].data]
+        check(max(times) > 0 and min(times) == -1, name + ": damage times on the crack, none elsewhere")
 for frame in expected["frames"]:
     scene.frame_set(frame["number"])
     visible = sorted(p.name for p in pieces if not p.hide_render)

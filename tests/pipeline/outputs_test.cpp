@@ -44,7 +44,8 @@ class OutputsTest : public testing::Test {
       const std::size_t at = planned.name.find("####");
       if (planned.count == 0) {
         for (const FractureRecord& f : report.fractures)
-          names.insert("vdb/" + f.body + "." + output::frame_number(frame_at(scene_, f.time)) + ".vdb");
+          names.insert("vdb/" + f.body + "." +
+                       output::frame_number(output::frame_at(f.time, scene_.frame_rate, scene_.start_frame)) + ".vdb");
       } else if (at == std::string::npos) {
         names.insert(planned.name);
       } else {
@@ -61,11 +62,12 @@ class OutputsTest : public testing::Test {
 };
 
 TEST_F(OutputsTest, ARunWritesExactlyWhatIsPlanned) {
-  scene_.outputs.vdb = true;
+  scene_.outputs.vdb = scene_.outputs.ply = scene_.outputs.usd = true;
+  scene_.outputs.transforms = TransformTable::both;
   const RunResult all = run_scene();
   ASSERT_GE(all.report.fractures.size(), 1u);
   EXPECT_EQ(files(), expected(all.report));
-  for (const char* stale : {"plate_ball.0001.obj", "plate_ball.1999.obj", "vdb/plate.1900.vdb"})
+  for (const char* stale : {"plate_ball.0001.obj", "plate_ball.1999.obj", "plate_ball.1999.ply", "vdb/plate.1900.vdb"})
     output::write_atomically(folder_ / stale, "of an earlier, longer run");
   output::write_atomically(folder_ / "plate_ball.notes.obj", "the user's own");
   const RunResult again = run_scene();
