@@ -17,18 +17,20 @@ const fs::path root = SUNDER_SOURCE_DIR;
 
 const std::map<std::string, std::set<std::string>> allowed = {
     {"core", {"core"}},
+    {"statistics", {"core", "statistics"}},
     {"geometry", {"core", "geometry"}},
     {"mpm", {"core", "geometry", "mpm"}},
     {"crack", {"core", "geometry", "crack"}},
     {"rigid", {"core", "geometry", "rigid", "tbb"}},
     {"output", {"core", "geometry", "output"}},
     {"validation", {"core", "geometry", "mpm", "crack", "rigid", "validation"}},
-    {"pipeline", {"core", "geometry", "mpm", "crack", "rigid", "output", "validation", "pipeline"}},
+    {"pipeline", {"core", "geometry", "mpm", "crack", "rigid", "output", "validation", "statistics", "pipeline"}},
 };
 
 /// Which third-party header prefixes a module's .cpp files and detail headers may include.
 const std::map<std::string, std::set<std::string>> libraries = {
     {"core", {}},
+    {"statistics", {}},
     {"geometry", {"CGAL", "openvdb", "assimp", "boost", "tbb"}},
     {"mpm", {"tbb"}},
     {"crack", {"voro++", "tbb"}},
