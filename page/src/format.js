@@ -27,8 +27,9 @@ export function number(x, digits = 3) {
 // Units from large to small: the first that leaves a number of at least one.
 function withUnit(x, units) {
   if (x === null || x === undefined || !Number.isFinite(x)) return number(x);
-  const [factor, name] = units.find(([size]) => Math.abs(x) >= size) ?? units.at(-1);
-  return x === 0 ? `0 ${units.find(([size]) => size <= 1)[1]}` : `${number(x / factor)} ${name}`;
+  const size = x === 0 ? 1 : Math.abs(x);
+  const [factor, name] = units.find(([least]) => size >= least) ?? units.at(-1);
+  return `${number(x / factor)} ${name}`;
 }
 
 const UNITS = {

@@ -19,17 +19,34 @@ import { Selection } from "./viewer/selection.js";
 
 const nothing = (text) => element("p", { class: "quiet" }, text);
 
-function showCharts(report, player) {
-  const counts = report.fragments.count > 0 ? countChart(report) : null;
-  const charts = [counts, volumeChart(report), stageChart(report), effectChart(report), energyChart(report)];
-  byId("chart-grid").append(...charts.filter(Boolean));
-  if (counts) player.addEventListener("frame", () => counts.setTime(player.time));
+// One part that cannot be shown, of a report of another version perhaps, leaves the others.
+function attempt(place, show) {
+  try {
+    show();
+  } catch (error) {
+    byId(place).append(nothing(`This part cannot be shown: ${error.message}.`));
+    console.error(error);
+  }
 }
 
-function showTables(report, player, selection) {
+function showCharts(report, player) {
+  const append = (make) => attempt("chart-grid", () => byId("chart-grid").append(make(report) ?? ""));
+  append(() => {
+    if (report.fragments.count === 0) return null;
+    const counts = countChart(report);
+    player.addEventListener("frame", () => counts.setTime(player.time));
+    return counts;
+  });
+  for (const make of [volumeChart, stageChart, effectChart, energyChart]) append(make);
+}
+
+function showFragments(report, selection) {
   byId("fragment-table").append(
     report.fragments.count > 0 ? fragmentTable(report, selection) : nothing("Nothing broke."),
   );
+}
+
+function showFractures(report, player, selection) {
   const show = (fracture) => {
     player.pause();
     player.seek(frameAfter(player, fracture.time));
@@ -46,12 +63,13 @@ function main() {
   const scene = readScene();
   const player = new Player(report.frames);
   const selection = new Selection();
-  showOverview(report);
-  showNotices(report);
+  attempt("tiles", () => showOverview(report));
+  attempt("notice-list", () => showNotices(report));
   showCharts(report, player);
-  showTables(report, player, selection);
-  byId("run-facts").append(accuracyStatement(report), ...runFacts(report));
-  showScene(scene);
+  attempt("fragment-table", () => showFragments(report, selection));
+  attempt("fracture-table", () => showFractures(report, player, selection));
+  attempt("run-facts", () => byId("run-facts").append(accuracyStatement(report), ...runFacts(report)));
+  attempt("scene-echo", () => showScene(scene));
   say("Reading the geometry …");
   // The geometry stands behind this script, and what is above is worth showing before it is read.
   document.addEventListener("DOMContentLoaded", () =>
