@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include <tbb/parallel_for.h>
 
 #include "output/atomic_file.h"
@@ -107,9 +109,12 @@ void append_motion(TextBuffer& out, const Motion& samples) {
     out << "(" << q.w() << ", " << q.x() << ", " << q.y() << ", " << q.z() << ")";
   });
   out << "        uniform token[] xformOpOrder = [\"xformOp:translate\", \"xformOp:orient\"]\n";
-  append_samples(out, "custom vector3f sunder:velocity", samples,
+  // In USD's grammar samples cannot say `custom` themselves.
+  out << "        custom vector3f sunder:velocity\n";
+  append_samples(out, "vector3f sunder:velocity", samples,
                  [&](const Sample& s) { append(out, Eigen::Vector3f(s.twist.linear.cast<float>())); });
-  append_samples(out, "custom vector3f sunder:angularVelocity", samples,
+  out << "        custom vector3f sunder:angularVelocity\n";
+  append_samples(out, "vector3f sunder:angularVelocity", samples,
                  [&](const Sample& s) { append(out, Eigen::Vector3f(s.twist.angular.cast<float>())); });
 }
 
@@ -136,8 +141,13 @@ void append_origin(TextBuffer& out, const Sequence& sequence, const Piece& piece
       << "\n        custom int sunder:generation = " << piece.generation << "\n        custom int sunder:birthFrame = "
       << frame_at(piece.birth_time, sequence.frame_rate, sequence.start_frame)
       << "\n        custom double sunder:birthTime = " << piece.birth_time
-      << "\n        custom double sunder:volume = " << piece.volume
-      << "\n        custom double sunder:mass = " << piece.mass << "\n";
+      << "\n        custom string sunder:material = \"" << piece.material
+      << "\"\n        custom double sunder:volume = " << piece.volume
+      << "\n        custom double sunder:mass = " << piece.mass
+      << "\n        custom double sunder:area = " << piece.area
+      << "\n        custom double sunder:insideArea = " << piece.inside_area
+      << "\n        custom bool sunder:closed = " << static_cast<int>(piece.closed) << "\n";
+  if (std::isfinite(piece.death_time)) out << "        custom double sunder:deathTime = " << piece.death_time << "\n";
 }
 
 // What a piece needs to know of the file around it.
