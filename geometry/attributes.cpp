@@ -5,11 +5,13 @@
 
 #include "core/error.h"
 #include "geometry/detail/mean_value.h"
+#include "geometry/surface_distance.h"
 
 namespace sunder::geometry {
 namespace {
 
 constexpr double kUnknownTime = -1;
+const Colour kWhite = Colour::Ones();
 constexpr double kNearlyLevel = 0.9;  // planes whose normal is this upright have no useful direction upward
 
 using Corners = std::array<Vec3, 3>;
@@ -147,7 +149,7 @@ double time_at(const CrackFace& face, const Vec3& x) {
 
 /// Which attributes the fragment has, and its materials.
 struct Plan {
-  bool uv, normal, material, damage_time;
+  bool uv, normal, material, colour, damage_time;
   std::vector<std::string> names;
   int inside_material;
 };
@@ -156,6 +158,7 @@ Plan plan_for(const SurfaceAttributes& of_body, bool any_inside, const InsideSet
   Plan plan{!of_body.uv.empty() || (any_inside && settings.uv),
             !of_body.normal.empty() || (any_inside && settings.normal),
             !of_body.material.empty() || any_inside,
+            !of_body.colour.empty(),
             !of_body.damage_time.empty() || (any_inside && !settings.damage_time.empty()),
             of_body.material_names,
             -1};
@@ -191,6 +194,11 @@ class Builder {
       }
     }
     if (plan_.material) result_.material.push_back(of_body_.material.empty() ? 0 : of_body_.material[source]);
+    if (plan_.colour) {
+      const std::array<Colour, 3>& colours = of_body_.colour[source];
+      result_.colour.push_back(
+          {interpolated(colours, place[0]), interpolated(colours, place[1]), interpolated(colours, place[2])});
+    }
     if (plan_.damage_time) {
       result_.damage_time.push_back(same(kUnknownTime));
       for (int k = 0; k < 3 && !of_body_.damage_time.empty(); ++k) {
@@ -205,9 +213,19 @@ class Builder {
     if (plan_.uv) result_.uv.push_back({face.texture(x[0]), face.texture(x[1]), face.texture(x[2])});
     if (plan_.normal) result_.normal.push_back(same(face.normal));
     if (plan_.material) result_.material.push_back(plan_.inside_material);
+    if (plan_.colour) result_.colour.push_back(same(kWhite));
     if (plan_.damage_time) {
       result_.damage_time.push_back({time_at(face, x[0]), time_at(face, x[1]), time_at(face, x[2])});
     }
+  }
+
+  /// A face that the body has nothing for.
+  void add_bare(const Corners& x, int material) {
+    if (plan_.uv) result_.uv.push_back(same<Uv>(Uv::Zero()));
+    if (plan_.normal) result_.normal.push_back(same(normal_of(x)));
+    if (plan_.material) result_.material.push_back(material);
+    if (plan_.colour) result_.colour.push_back(same(kWhite));
+    if (plan_.damage_time) result_.damage_time.push_back(same(kUnknownTime));
   }
 
   SurfaceAttributes take() { return std::move(result_); }
@@ -241,7 +259,7 @@ bool fits(const SurfaceAttributes& attributes, const TriangleMesh& mesh) {
   const int names = static_cast<int>(attributes.material_names.size());
   const auto named = [&](int material) { return material >= 0 && material < names; };
   return fit(attributes.uv.size()) && fit(attributes.normal.size()) && fit(attributes.material.size()) &&
-         fit(attributes.damage_time.size()) &&
+         fit(attributes.colour.size()) && fit(attributes.damage_time.size()) &&
          std::all_of(attributes.material.begin(), attributes.material.end(), named);
 }
 
@@ -271,6 +289,33 @@ SurfaceAttributes carry(const TriangleMesh& body, const SurfaceAttributes& of_bo
     builder.add_inside(x, crack);
   }
   return builder.take();
+}
+
+SurfaceAttributes transferred(const TriangleMesh& source, const SurfaceAttributes& attributes,
+                              const TriangleMesh& target, double reach) {
+  if (!fits(attributes, source)) reject("the attributes do not fit the mesh");
+  std::vector<Vec3> centres;
+  for (int i = 0; i < static_cast<int>(target.faces.size()); ++i) {
+    const Corners x = corners_of(target, i);
+    centres.push_back((x[0] + x[1] + x[2]) / 3);
+  }
+  const Plan plan = plan_for(attributes, false, {});
+  Builder builder(attributes, plan);
+  const std::vector<SurfacePoint> nearest = nearest_on(source, centres);
+  for (int i = 0; i < static_cast<int>(target.faces.size()); ++i) {
+    const int face = nearest[i].face;
+    if (nearest[i].distance <= reach)
+      builder.add_outside(corners_of(target, i), corners_of(source, face), face);
+    else
+      builder.add_bare(corners_of(target, i), attributes.material.empty() ? 0 : attributes.material[face]);
+  }
+  return builder.take();
+}
+
+void transform_normals(SurfaceAttributes& attributes, const Mat3& linear) {
+  const Mat3 of_normals = linear.inverse().transpose();
+  for (std::array<Vec3, 3>& normals : attributes.normal)
+    for (Vec3& normal : normals) normal = (of_normals * normal).normalized();
 }
 
 }  // namespace sunder::geometry

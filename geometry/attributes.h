@@ -11,6 +11,7 @@
 namespace sunder::geometry {
 
 using Uv = Eigen::Vector2d;
+using Colour = Eigen::Vector4d;  ///< red, green, blue, opacity in [0, 1], as the artist's file has them
 
 /// Per face, and per corner in the order of the face. Every list is empty (the surface has no such attribute) or as
 /// long as the faces.
@@ -19,6 +20,7 @@ struct SurfaceAttributes {
   std::vector<std::array<Vec3, 3>> normal;  ///< unit length
   std::vector<int> material;                ///< index into material_names
   std::vector<std::string> material_names;
+  std::vector<std::array<Colour, 3>> colour;
   std::vector<std::array<double, 3>> damage_time;  ///< [s]; -1 where unknown
 
   bool operator==(const SurfaceAttributes&) const = default;
@@ -47,6 +49,7 @@ std::vector<Vec3> face_normals(const RegionBoundary& regions);
 /// Faces of the body's surface get what the body has at their corners: at corners of the body's own faces bit for bit,
 /// elsewhere by barycentric coordinates in the source face; normals have unit length again. Where the body lacks what
 /// inside faces have, they get uv (0, 0), the face's own normal, damage time -1, or a material of the name "outside".
+/// Where the body has colours, faces on cracks are white.
 ///
 /// Faces on cracks get
 /// * a material that follows those of the body, or the body's material of that name, so that a fragment can be cut
@@ -67,5 +70,15 @@ std::vector<Vec3> face_normals(const RegionBoundary& regions);
 /// attributes bit for bit. Errors: ErrorKind::mesh when lists do not fit what they belong to.
 SurfaceAttributes carry(const TriangleMesh& body, const SurfaceAttributes& of_body, const Fragment& fragment,
                         const RegionBoundary& regions, const InsideSettings& settings = {});
+
+/// The same attributes on another surface that lies on or near the first, as repair makes it: each face gets what the
+/// source has at its corners in the face that is nearest to its centre. A face whose centre is farther than `reach` [m]
+/// from the source, such as one that fills a hole, gets uv (0, 0), its own normal, white, no damage time and the
+/// material of the nearest face. Errors: ErrorKind::mesh when the attributes do not fit.
+SurfaceAttributes transferred(const TriangleMesh& source, const SurfaceAttributes& attributes,
+                              const TriangleMesh& target, double reach);
+
+/// After `transformed(mesh, linear, ...)`: normals stay normal to the surface. `linear` must not be a reflection.
+void transform_normals(SurfaceAttributes& attributes, const Mat3& linear);
 
 }  // namespace sunder::geometry

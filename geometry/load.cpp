@@ -40,6 +40,11 @@ Mat3 linear_part(const aiMatrix4x4& m) {
 
 Vec3 to_vec3(const aiVector3D& x) { return {x.x, x.y, x.z}; }
 
+Colour to_colour(const aiColor4D& c) {
+  const Colour colour(c.r, c.g, c.b, c.a);
+  return colour.allFinite() ? Colour(colour.cwiseMax(0).cwiseMin(1)) : Colour(Colour::Ones());
+}
+
 Vec3 unit_or_zero(const Vec3& x) {
   const double length = x.norm();
   return std::isfinite(length) && length > 0 ? Vec3(x / length) : Vec3(Vec3::Zero());
@@ -52,6 +57,7 @@ class Collector {
     if (scene.mRootNode != nullptr) append_node(*scene.mRootNode, aiMatrix4x4());
     if (!any_uv_) result_.attributes.uv.clear();
     if (!any_normal_) result_.attributes.normal.clear();
+    if (!any_colour_) result_.attributes.colour.clear();
     name_materials();
   }
 
@@ -74,6 +80,7 @@ class Collector {
     }
     any_uv_ |= part.HasTextureCoords(0);
     any_normal_ |= part.HasNormals();
+    any_colour_ |= part.HasVertexColors(0);
     const double determinant = linear.determinant();
     const Mat3 of_normals = determinant != 0 ? Mat3(linear.inverse().transpose()) : Mat3(Mat3::Zero());
     for (unsigned i = 0; i < part.mNumFaces; ++i) {
@@ -92,10 +99,12 @@ class Collector {
     Triangle face;
     std::array<Uv, 3> uv;
     std::array<Vec3, 3> normal;
+    std::array<Colour, 3> colour;
     for (int k = 0; k < 3; ++k) {
       face[k] = first + static_cast<int>(corner[k]);
       uv[k].setZero();
       normal[k].setZero();
+      colour[k] = part.HasVertexColors(0) ? to_colour(part.mColors[0][corner[k]]) : Colour(Colour::Ones());
       if (part.HasTextureCoords(0)) uv[k] = to_vec3(part.mTextureCoords[0][corner[k]]).head<2>();
       if (!uv[k].allFinite()) uv[k].setZero();
       if (part.HasNormals()) normal[k] = unit_or_zero(of_normals * to_vec3(part.mNormals[corner[k]]));
@@ -103,6 +112,7 @@ class Collector {
     result_.mesh.faces.push_back(face);
     result_.attributes.uv.push_back(uv);
     result_.attributes.normal.push_back(normal);
+    result_.attributes.colour.push_back(colour);
     result_.attributes.material.push_back(static_cast<int>(part.mMaterialIndex));
   }
 
@@ -131,7 +141,7 @@ class Collector {
   const fs::path& file_;
   const aiScene& scene_;
   TexturedMesh result_;
-  bool any_uv_ = false, any_normal_ = false;
+  bool any_uv_ = false, any_normal_ = false, any_colour_ = false;
 };
 
 // assimp makes room for as many vertices and faces as the head of an OFF file promises before it looks for them.
@@ -151,8 +161,8 @@ TexturedMesh read(const fs::path& file) {
   if (!fs::is_regular_file(file)) fail(ErrorKind::io, file, "no such file");
   if (file.extension() == ".off") require_honest_off_header(file);
   Assimp::Importer importer;
-  constexpr int kIgnored = aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_COLORS | aiComponent_TEXTURES |
-                           aiComponent_LIGHTS | aiComponent_CAMERAS | aiComponent_ANIMATIONS | aiComponent_BONEWEIGHTS;
+  constexpr int kIgnored = aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_TEXTURES | aiComponent_LIGHTS |
+                           aiComponent_CAMERAS | aiComponent_ANIMATIONS | aiComponent_BONEWEIGHTS;
   importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, kIgnored);
   const aiScene* scene = nullptr;
   try {
@@ -186,6 +196,7 @@ void weld(TexturedMesh& textured) {
   keep(mesh.faces, kept);
   keep(textured.attributes.uv, kept);
   keep(textured.attributes.normal, kept);
+  keep(textured.attributes.colour, kept);
   keep(textured.attributes.material, kept);
   mesh = detail::compacted(mesh);
 }

@@ -27,9 +27,10 @@ struct TexturedMesh {
 };
 
 /// The same mesh with what its surface carries: the first set of texture coordinates, normals (turned with node
-/// transforms and axes, unit length) and materials with their names, as far as the file has them. Where only parts of a
-/// file have texture coordinates or normals, the others get (0, 0) and the normals of their faces. Materials are
-/// numbered as in the file, those that no face uses left out; a file without materials has none. Errors: as load_mesh.
+/// transforms and axes, unit length), the first set of vertex colours and materials with their names, as far as the
+/// file has them. Where only parts of a file have texture coordinates, normals or colours, the others get (0, 0), the
+/// normals of their faces and white. Materials are numbered as in the file, those that no face uses left out; a file
+/// without materials has none. Errors: as load_mesh.
 TexturedMesh load_textured_mesh(const std::filesystem::path& file, const LoadSettings& settings = {});
 
 /// Writes a binary-exact (17 digits) OFF or OBJ by extension; for tests and for looking. Errors: ErrorKind::io.

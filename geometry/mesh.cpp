@@ -11,10 +11,19 @@ Box bounds(const TriangleMesh& mesh) {
   return box;
 }
 
-double face_area(const TriangleMesh& mesh, std::size_t face) {
+namespace {
+
+// Twice the area long.
+Vec3 area_vector(const TriangleMesh& mesh, std::size_t face) {
   const auto corner = [&](std::size_t k) { return mesh.vertices[static_cast<std::size_t>(mesh.faces[face][k])]; };
-  return (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm() / 2;
+  return (corner(1) - corner(0)).cross(corner(2) - corner(0));
 }
+
+}  // namespace
+
+double face_area(const TriangleMesh& mesh, std::size_t face) { return area_vector(mesh, face).norm() / 2; }
+
+Vec3 face_normal(const TriangleMesh& mesh, std::size_t face) { return area_vector(mesh, face).normalized(); }
 
 TriangleMesh transformed(const TriangleMesh& mesh, const Mat3& linear, const Vec3& offset) {
   TriangleMesh result = mesh;

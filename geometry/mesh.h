@@ -21,6 +21,9 @@ Box bounds(const TriangleMesh& mesh);
 /// Of one face [m^2].
 double face_area(const TriangleMesh& mesh, std::size_t face);
 
+/// Of one face, of unit length; zero for a face without area.
+Vec3 face_normal(const TriangleMesh& mesh, std::size_t face);
+
 /// x -> linear * x + offset. A reflection turns the faces so that they keep pointing outward.
 TriangleMesh transformed(const TriangleMesh& mesh, const Mat3& linear, const Vec3& offset);
 

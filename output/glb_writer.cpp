@@ -49,9 +49,11 @@ constexpr std::array<unsigned char, 67> kWhitePixel = {
 class Builder {
  public:
   explicit Builder(const Sequence& sequence) : sequence_(sequence) {
-    for (View* view : {&positions_, &normals_, &uvs_, &damage_times_}) view->target = TINYGLTF_TARGET_ARRAY_BUFFER;
+    for (View* view : {&positions_, &normals_, &uvs_, &colours_, &damage_times_})
+      view->target = TINYGLTF_TARGET_ARRAY_BUFFER;
     positions_.stride = normals_.stride = 3 * sizeof(float);
     uvs_.stride = 2 * sizeof(float);
+    colours_.stride = 4 * sizeof(float);
     damage_times_.stride = sizeof(float);
     indices_.target = TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER;
   }
@@ -158,6 +160,9 @@ class Builder {
       for (auto& uv : arrays.uv) uv[1] = 1 - uv[1];  // glTF's v points down the picture
       primitive.attributes["TEXCOORD_0"] = add_accessor<float>(uvs_, flat(arrays.uv), kFloat, TINYGLTF_TYPE_VEC2, 2);
     }
+    if (!arrays.colour.empty())
+      primitive.attributes["COLOR_0"] =
+          add_accessor<float>(colours_, flat(arrays.colour), kFloat, TINYGLTF_TYPE_VEC4, 4);
     if (!arrays.damage_time.empty())
       primitive.attributes["_DAMAGE_TIME"] =
           add_accessor<float>(damage_times_, arrays.damage_time, kFloat, TINYGLTF_TYPE_SCALAR, 1);
@@ -290,7 +295,7 @@ class Builder {
   void finish_buffer() {
     model_.bufferViews.resize(static_cast<std::size_t>(view_count_));
     tinygltf::Buffer buffer;
-    for (const View* view : {&positions_, &normals_, &uvs_, &damage_times_, &indices_, &motion_, &image_}) {
+    for (const View* view : {&positions_, &normals_, &uvs_, &colours_, &damage_times_, &indices_, &motion_, &image_}) {
       if (view->index < 0) continue;
       tinygltf::BufferView& target = model_.bufferViews[static_cast<std::size_t>(view->index)];
       target.buffer = 0;
@@ -306,7 +311,7 @@ class Builder {
   const Sequence& sequence_;
   tinygltf::Model model_;
   tinygltf::Animation animation_;
-  View positions_, normals_, uvs_, damage_times_, indices_, motion_, image_;
+  View positions_, normals_, uvs_, colours_, damage_times_, indices_, motion_, image_;
   int view_count_ = 0;
   std::set<std::string> textured_;  // names of materials
   std::map<std::string, int> material_index_;

@@ -83,6 +83,11 @@ void append_surface(TextBuffer& out, const Piece& piece) {
           out << "(" << uv.x() << ", " << uv.y() << ")";
         },
         kFaceVarying);
+  if (!surface.colour.empty())
+    append_list(
+        out, "color3f[] primvars:displayColor", 3 * faces,
+        [&](std::size_t c) { append(out, Eigen::Vector3f(surface.colour[c / 3][c % 3].head<3>().cast<float>())); },
+        kFaceVarying);
   if (!surface.damage_time.empty())
     append_list(
         out, "float[] primvars:damage_time", 3 * faces,

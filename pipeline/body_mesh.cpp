@@ -20,27 +20,34 @@ std::string subject(const SceneBody& body) {
               subject(body) + ": mesh " + body.mesh.file.string() + " is not a solid: " + defect + "; " + remedy);
 }
 
-TriangleMesh load(const SceneBody& body) {
+geometry::TexturedMesh load(const SceneBody& body) {
   try {
-    return geometry::load_mesh(body.mesh.file, body.mesh.load);
+    return geometry::load_textured_mesh(body.mesh.file, body.mesh.load);
   } catch (const Error& error) {
     throw Error(error.kind(), subject(body) + ": " + error.what());
   }
 }
 
 BodyMesh solid_from_file(const SceneBody& body) {
-  const TriangleMesh mesh = load(body);
+  geometry::TexturedMesh loaded = load(body);
   if (!body.mesh.allow_repair) {
-    const geometry::MeshReport report = geometry::inspect(mesh);
+    const geometry::MeshReport report = geometry::inspect(loaded.mesh);
     if (!report.is_solid()) fail_mesh(body, report.summary(), "repair = \"auto\" would try to mend it");
-    return {mesh, {}};
+    return {std::move(loaded.mesh), std::move(loaded.attributes), {}};
   }
-  const geometry::RepairResult repaired = geometry::repair(mesh);
+  const geometry::RepairSettings settings;
+  geometry::RepairResult repaired = geometry::repair(loaded.mesh, settings);
   if (!repaired.solid) {
     fail_mesh(body, repaired.before.summary(),
               "repair left: " + repaired.after.summary() + "; close the mesh in a modelling program");
   }
-  return {repaired.mesh, repaired.steps};
+  if (!repaired.steps.empty() && loaded.attributes != geometry::SurfaceAttributes{}) {
+    // Mended surfaces lie on the old one but for rounding, remeshed ones within a voxel or two of it.
+    const double diagonal = geometry::bounds(loaded.mesh).diagonal().norm();
+    const double reach = (repaired.remeshed ? 2 * settings.remesh_voxel : 1e-6) * diagonal;
+    loaded.attributes = geometry::transferred(loaded.mesh, loaded.attributes, repaired.mesh, reach);
+  }
+  return {std::move(repaired.mesh), std::move(loaded.attributes), std::move(repaired.steps)};
 }
 
 // Factors that bring the mesh's box to the scene's height or size.
@@ -71,6 +78,7 @@ BodyMesh body_mesh(const SceneBody& body) {
   }
   const Mat3 linear = body.orientation.toRotationMatrix() * scale.asDiagonal();
   result.mesh = geometry::transformed(result.mesh, linear, Vec3::Zero());
+  geometry::transform_normals(result.attributes, linear);
   const Vec3 offset = body.position - anchor_point(body.anchor, result.mesh);
   result.mesh = geometry::transformed(result.mesh, Mat3::Identity(), offset);
   return result;

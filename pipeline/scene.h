@@ -127,7 +127,8 @@ Scene load_scene(const std::filesystem::path& file, const AssetPaths& assets = d
 /// the scene.
 struct BodyMesh {
   geometry::TriangleMesh mesh;
-  std::vector<std::string> repairs;  ///< what repair did; empty: nothing
+  geometry::SurfaceAttributes attributes;  ///< what the file's surface carries; shapes of the program carry nothing
+  std::vector<std::string> repairs;        ///< what repair did; empty: nothing
 };
 BodyMesh body_mesh(const SceneBody& body);
 

@@ -96,7 +96,8 @@ void Simulation::plan_effects_of_bodies() {
 RigidPart Simulation::make_piece(const SceneBody& body) {
   BodyMesh source = body_mesh(body);
   if (!source.repairs.empty()) state_.report.repairs.push_back({body.name, source.repairs});
-  output::Piece piece = detail::whole_piece(body.name, body.material.name, std::move(source.mesh), {});
+  output::Piece piece =
+      detail::whole_piece(body.name, body.material.name, std::move(source.mesh), std::move(source.attributes));
   piece.id = static_cast<int>(state_.sequence.pieces.size());
   const RigidPart part = detail::centred(piece, body.material.density);
   piece.birth = {body.velocity, body.angular_velocity};

@@ -12,6 +12,7 @@
 #include "geometry/load_points.h"
 #include "geometry/mass_properties.h"
 #include "geometry/sample.h"
+#include "geometry/surface_distance.h"
 #include "output/atomic_file.h"
 #include "output/writers.h"
 #include "pipeline/crack_writer.h"
@@ -62,7 +63,7 @@ output::Sequence still_sequence(const SceneBody& body, const BodyMesh& source, c
     if (piece.parent >= 0 || cracked.cut.fragments.empty()) sequence.frames[0].poses.push_back({piece.id, {}, {}});
     sequence.pieces.push_back(std::move(piece));
   };
-  const output::Piece whole = detail::whole_piece(body.name, body.material.name, source.mesh, {});
+  const output::Piece whole = detail::whole_piece(body.name, body.material.name, source.mesh, source.attributes);
   add(whole);
   if (!cracked.cut.fragments.empty()) sequence.pieces[0].death_time = 0;
   for (const geometry::Fragment& fragment : cracked.cut.fragments) {
@@ -116,41 +117,6 @@ std::vector<Vec3> random_points(const geometry::TriangleMesh& mesh, int count, s
   return points;
 }
 
-/// The point of the surface nearest to `x`, and the normal there.
-struct SurfacePoint {
-  Vec3 point = Vec3::Zero(), normal = Vec3::UnitY();
-  double distance = std::numeric_limits<double>::infinity();
-};
-
-/// The point of a triangle nearest to `x`.
-Vec3 nearest_in(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& x) {
-  const auto on_edge = [&](const Vec3& p, const Vec3& q) -> Vec3 {
-    return p + std::clamp((x - p).dot(q - p) / (q - p).squaredNorm(), 0.0, 1.0) * (q - p);
-  };
-  const Vec3 n = (b - a).cross(c - a);
-  const Vec3 foot = x - n * (n.dot(x - a) / n.squaredNorm());
-  const bool inside =
-      n.dot((b - a).cross(foot - a)) >= 0 && n.dot((c - b).cross(foot - b)) >= 0 && n.dot((a - c).cross(foot - c)) >= 0;
-  if (inside) return foot;
-  Vec3 best = on_edge(a, b);
-  for (const Vec3& other : {on_edge(b, c), on_edge(c, a)})
-    if ((other - x).squaredNorm() < (best - x).squaredNorm()) best = other;
-  return best;
-}
-
-SurfacePoint surface_near(const geometry::TriangleMesh& mesh, const Vec3& x) {
-  SurfacePoint nearest;
-  for (const geometry::Triangle& face : mesh.faces) {
-    const Vec3 &a = mesh.vertices[static_cast<std::size_t>(face[0])],
-               &b = mesh.vertices[static_cast<std::size_t>(face[1])],
-               &c = mesh.vertices[static_cast<std::size_t>(face[2])];
-    const Vec3 point = nearest_in(a, b, c, x), normal = (b - a).cross(c - a);
-    const double distance = (point - x).norm();
-    if (distance < nearest.distance && normal.norm() > 0) nearest = {point, normal.normalized(), distance};
-  }
-  return nearest;
-}
-
 /// What the options ask of a body of this box, by the rules of scenes. The command breaks it, whatever its material.
 struct Asked {
   Scene scene;
@@ -173,15 +139,16 @@ struct Asked {
 FractureInput fracture_input(const FractureOptions& options, const geometry::TriangleMesh& mesh,
                              const Material& material, Report& report) {
   const Material ball = find_material(impactor);
-  const SurfacePoint target = surface_near(mesh, *options.at);
+  const geometry::SurfacePoint target = geometry::nearest_on(mesh, {&*options.at, 1}).front();
+  const Vec3 normal = geometry::face_normal(mesh, static_cast<std::size_t>(target.face));
   if (target.distance > far_off * geometry::bounds(mesh).diagonal().norm())
     report.notes.push_back("--at lies " + std::to_string(target.distance) +
                            " m off the surface; the nearest point of the surface was hit (are the units right?)");
   const double mass = options.impulse / options.speed;
   mpm::Load load;
   load.point = target.point;
-  load.outward = options.direction ? (-options.direction->normalized()).eval() : target.normal;
-  if (!(load.outward.dot(target.normal) > 0.05))
+  load.outward = options.direction ? (-options.direction->normalized()).eval() : normal;
+  if (!(load.outward.dot(normal) > 0.05))
     throw Error(ErrorKind::usage,
                 "--direction points out of the surface at --at; the impactor has to come from outside");
   load.approach_speed = options.speed;

@@ -9,6 +9,7 @@ namespace {
 struct Corner {
   std::array<float, 2> uv{};
   std::array<float, 3> normal{};
+  std::array<float, 4> colour{};
   float damage_time = -1;
 
   bool operator==(const Corner&) const = default;
@@ -30,6 +31,7 @@ class Builder {
     const geometry::SurfaceAttributes& surface = piece.surface;
     has_uv_ = uv;
     has_normal_ = !surface.normal.empty();
+    has_colour_ = !surface.colour.empty();
     has_time_ = !surface.damage_time.empty() &&
                 any_corner(faces, [&](std::size_t face, std::size_t k) { return surface.damage_time[face][k] >= 0; });
   }
@@ -43,6 +45,7 @@ class Builder {
     for (const Corner& corner : corners_) {
       if (has_uv_) arrays_.uv.push_back(corner.uv);
       if (has_normal_) arrays_.normal.push_back(corner.normal);
+      if (has_colour_) arrays_.colour.push_back(corner.colour);
       if (has_time_) arrays_.damage_time.push_back(corner.damage_time);
     }
     return std::move(arrays_);
@@ -55,9 +58,9 @@ class Builder {
     if (has_uv_ && !surface.uv.empty())
       corner.uv = {static_cast<float>(surface.uv[face][k].x()), static_cast<float>(surface.uv[face][k].y())};
     if (has_normal_) {
-      const Eigen::Vector3f n = surface.normal[face][k].cast<float>();
-      corner.normal = {n.x(), n.y(), n.z()};
+      Eigen::Map<Eigen::Vector3f>(corner.normal.data()) = surface.normal[face][k].cast<float>();
     }
+    if (has_colour_) Eigen::Map<Eigen::Vector4f>(corner.colour.data()) = surface.colour[face][k].cast<float>();
     if (has_time_) corner.damage_time = static_cast<float>(surface.damage_time[face][k]);
     return corner;
   }
@@ -75,7 +78,7 @@ class Builder {
   }
 
   const Piece& piece_;
-  bool has_uv_ = false, has_normal_ = false, has_time_ = false;
+  bool has_uv_ = false, has_normal_ = false, has_colour_ = false, has_time_ = false;
   std::vector<int> newest_, older_;
   std::vector<Corner> corners_;
   VertexArrays arrays_;

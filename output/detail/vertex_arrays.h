@@ -13,12 +13,13 @@ struct VertexArrays {
   std::vector<int> vertex;  ///< index in the piece's mesh
   std::vector<std::array<float, 2>> uv;
   std::vector<std::array<float, 3>> normal;
+  std::vector<std::array<float, 4>> colour;
   std::vector<float> damage_time;     ///< [s], -1: unknown
   std::vector<std::uint32_t> corner;  ///< three per face: indices into the lists above
 };
 
-/// Whether the faces have texture coordinates that are not all zero, which is what faces without any get where others of
-/// the surface have some.
+/// Whether the faces have texture coordinates that are not all zero, which is what faces without any get where others
+/// of the surface have some.
 bool has_texture(const Piece& piece, const std::vector<int>& faces);
 
 /// Of some of a piece's faces. Corners at one vertex are one where all they carry is equal. `uv`: with texture

@@ -60,7 +60,7 @@ void serialize(Archive& archive, Samples& samples) {
 
 template <class Archive>
 void serialize(Archive& archive, SurfaceAttributes& a) {
-  archive(a.uv, a.normal, a.material, a.material_names, a.damage_time);
+  archive(a.uv, a.normal, a.material, a.material_names, a.colour, a.damage_time);
 }
 
 }  // namespace sunder::geometry

@@ -33,6 +33,8 @@ inline Piece attributed_piece(int id, const std::string& name, int parent) {
     const Vec3 normal = (at(b) - at(a)).cross(at(c) - at(a)).normalized();
     surface.normal.push_back({normal, normal, normal});
     surface.uv.push_back({geometry::Uv(0, 0), geometry::Uv(0.75, 0.1), geometry::Uv(0.5, 1)});
+    surface.colour.push_back(
+        {geometry::Colour(1, 0.5, 0, 1), geometry::Colour(0, 0, 1, 1), geometry::Colour(1, 1, 1, 0.25)});
     const double time = piece.inside(f) ? 1e-4 : -1;
     surface.damage_time.push_back({time, time, piece.inside(f) ? 2e-4 : -1});
   }
