@@ -13,7 +13,16 @@ export const launch = (more = GRAPHICS) =>
     protocolTimeout: 600_000,
   });
 
-/** Waits until the viewer drew or gave up. `complaints`: of the console and of scripts; `requests`: all addresses. */
+// Keeps what the viewer's canvas holds when it has come to rest: once the browser has shown it, it cannot be read.
+function keepPicture() {
+  document.addEventListener("DOMContentLoaded", () => {
+    const canvas = document.getElementById("canvas");
+    const keep = () => "still" in canvas.dataset && (window.picture = canvas.toDataURL());
+    new MutationObserver(keep).observe(canvas, { attributes: true, attributeFilter: ["data-still"] });
+  });
+}
+
+/** Waits until the viewer drew or gave up; `window.picture`: what it shows at rest. `complaints`: of the console and of scripts; `requests`: all addresses. */
 export async function openPage(browser, address, { width = 1280, scheme = "light", motion = "reduce" } = {}) {
   const page = await browser.newPage();
   const complaints = [];
@@ -26,6 +35,7 @@ export async function openPage(browser, address, { width = 1280, scheme = "light
     { name: "prefers-color-scheme", value: scheme },
     { name: "prefers-reduced-motion", value: motion },
   ]);
+  await page.evaluateOnNewDocument(keepPicture);
   await page.goto(address);
   await page.waitForSelector("#viewer[data-ready], #viewer.no-view", { timeout: PATIENCE }).catch((error) => {
     throw new Error(`${error.message}\n${complaints.join("\n")}`);

@@ -1,5 +1,6 @@
 #include "tests/pipeline/burst.h"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -24,17 +25,21 @@ Vec3 shard_centre(int k, int n) {
          Vec3(std::sin(polar) * std::cos(turn), std::cos(polar), std::sin(polar) * std::sin(turn));
 }
 
-// Faces that look at the middle of the ball are on cracks, and broke the later the farther out they are.
+// Faces that look at the middle of the ball are on cracks, which broke the later the farther out they are.
 void split_surface(output::Piece& piece, const Vec3& centre) {
   piece.surface.material_names = {"porcelain_outside", "porcelain_inside"};
   for (const geometry::Triangle& face : piece.mesh.faces) {
     Vec3 middle = Vec3::Zero();
-    for (const int v : face) middle += piece.mesh.vertices[static_cast<std::size_t>(v)] / 3;
+    std::array<double, 3> times{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3& vertex = piece.mesh.vertices[static_cast<std::size_t>(face[k])];
+      middle += vertex / 3;
+      times[k] = 1e-4 * (centre + vertex).norm() / burst_radius;
+    }
     const bool inside = piece.parent >= 0 && middle.dot(centre) < 0;
     piece.source_face.push_back(inside ? -1 : 0);
     piece.surface.material.push_back(inside ? 1 : 0);
-    const double time = inside ? 1e-4 * (centre + middle).norm() / burst_radius : -1;
-    piece.surface.damage_time.push_back({time, time, time});
+    piece.surface.damage_time.push_back(inside ? times : std::array<double, 3>{-1, -1, -1});
   }
 }
 
@@ -67,7 +72,8 @@ output::Sequence burst_sequence(const Burst& burst) {
   const double spacing = 1.6 * burst_radius / std::cbrt(burst.shards);
   for (int k = 0; k < burst.shards; ++k) {
     const double size = 0.25 + 0.3 * std::abs(std::sin(12.9898 * k));
-    sequence.pieces.push_back(burst_piece(k + 1, shard_centre(k, burst.shards), size * spacing, burst.subdivisions));
+    sequence.pieces.push_back(
+        burst_piece(k + 1, shard_centre(k, burst.shards), size * spacing, burst.subdivisions + k % 2));
     sequence.pieces.back().birth_time = birth;
   }
   const Vec3 middle(0, 2 * burst_radius, 0);

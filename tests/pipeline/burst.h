@@ -8,7 +8,7 @@ namespace sunder::pipeline {
 struct Burst {
   int shards = 27;
   int frames = 24;         ///< the ball is whole in the first tenth of them
-  int subdivisions = 1;    ///< a shard has 20 * 4^n faces
+  int subdivisions = 1;    ///< a shard has 20 * 4^n faces, every second one four times as many
   double frame_rate = 24;  ///< [1/s]
 };
 

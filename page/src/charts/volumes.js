@@ -119,7 +119,10 @@ function sentence(volumes, statistics, fits) {
   const sizes = `From ${volume(volumes[0])} to ${volume(volumes.at(-1))}, half of them above ${volume(middle)}.`;
   if (!statistics) return `${sizes} report.json holds no statistics: no laws are fitted.`;
   if (fits.length === 0) return `${sizes} ${statistics.fits_note || "No laws are fitted."}`;
-  return `${sizes} Of the laws, ${lawName(bestFit(fits).law)} has the lowest AIC.${statistics.fits_note ? ` ${statistics.fits_note}` : ""}`;
+  const best = bestFit(fits);
+  return [sizes, best && `Of the laws, ${lawName(best.law)} has the lowest AIC.`, statistics.fits_note]
+    .filter(Boolean)
+    .join(" ");
 }
 
 /** Null without fragments. */

@@ -1,4 +1,5 @@
-// The distributions that the report fits to fragment volumes: their names, and the share of fragments above a volume.
+// The laws that the report fits to fragment volumes: their names, and the share of fragments above a volume. The formulas
+// are those of docs/statistics.md.
 
 const names = {
   mott_2d: "Mott 2D",
@@ -34,5 +35,8 @@ export function survivalOf(fit) {
   return make({ above: fit.above, ...Object.fromEntries(fit.parameters.map(({ name, value }) => [name, value])) });
 }
 
-/** The fit that explains the numbers best for its count of parameters; null without fits. */
-export const bestFit = (fits) => fits.reduce((best, fit) => (best === null || fit.aic < best.aic ? fit : best), null);
+/** The fit with the lowest AIC, null without one. A power law has none: it speaks of a part of the fragments only. */
+export const bestFit = (fits) =>
+  fits
+    .filter((fit) => Number.isFinite(fit.aic) && fit.aic !== null)
+    .reduce((best, fit) => (best === null || fit.aic < best.aic ? fit : best), null);

@@ -10,7 +10,7 @@ export const keyOf = (piece, material, inside) => ((piece << 12) | (material << 
 
 const isInside = (glb, primitive) => glb.document.materials?.[primitive.material]?.name?.endsWith("_inside") ?? false;
 
-// Order of the faces: hiding the outside of broken pieces leaves one run of the rest.
+// Order of the faces: what is hidden together lies together.
 const BROKEN_OUTSIDE = 0;
 const WHOLE_OUTSIDE = 1;
 const INSIDE = 2;
@@ -89,15 +89,25 @@ class Merger {
       const a = 3 * this.indices[at + i];
       const b = 3 * this.indices[at + i + 1];
       const c = 3 * this.indices[at + i + 2];
-      const ux = p[b] - p[a], uy = p[b + 1] - p[a + 1], uz = p[b + 2] - p[a + 2];
-      const vx = p[c] - p[a], vy = p[c + 1] - p[a + 1], vz = p[c + 2] - p[a + 2];
-      const n = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
-      const length = Math.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) || 1;
-      for (let k = 0; k < 3; ++k) {
-        faces[i + k] = n[k] / length;
-        sums[a - 3 * first + k] += n[k];
-        sums[b - 3 * first + k] += n[k];
-        sums[c - 3 * first + k] += n[k];
+      const ux = p[b] - p[a];
+      const uy = p[b + 1] - p[a + 1];
+      const uz = p[b + 2] - p[a + 2];
+      const vx = p[c] - p[a];
+      const vy = p[c + 1] - p[a + 1];
+      const vz = p[c + 2] - p[a + 2];
+      // No arrays here: this loop runs over every face of the run.
+      const nx = uy * vz - uz * vy;
+      const ny = uz * vx - ux * vz;
+      const nz = ux * vy - uy * vx;
+      const length = Math.sqrt(nx * nx + ny * ny + nz * nz) || 1;
+      faces[i] = nx / length;
+      faces[i + 1] = ny / length;
+      faces[i + 2] = nz / length;
+      for (let corner = 0; corner < 3; ++corner) {
+        const s = 3 * (this.indices[at + i + corner] - first);
+        sums[s] += nx;
+        sums[s + 1] += ny;
+        sums[s + 2] += nz;
       }
     }
     for (let i = 0; i < sums.length; i += 3) {
@@ -117,8 +127,7 @@ class Merger {
 
 /**
  * `positions` (3 a vertex, in the frame of the piece), `keys` (keyOf), `normals` (signed bytes x, y, z and weight; weight
- * 0: flat), `damage` [s] (-1: unknown), `indices`, `hidden`: how many of them are the outside of broken pieces and come
- * first.
+ * 0: flat), `damage` [s] (-1: unknown), `indices`, `parts` [{ piece, brokenOutside, start, count }]: runs of the indices in their order.
  */
 export function mergePieces(glb, pieces) {
   const surfaces = surfacesOf(glb, pieces);
@@ -126,10 +135,12 @@ export function mergePieces(glb, pieces) {
   const ends = [0, 0, 0];
   for (const surface of surfaces) ends[surface.kind] += surface.corners;
   const next = [0, ends[0], ends[0] + ends[1]];
-  for (const surface of surfaces) {
-    merger.add(surface, next[surface.kind]);
+  const parts = surfaces.map((surface) => {
+    const start = next[surface.kind];
+    merger.add(surface, start);
     next[surface.kind] += surface.corners;
-  }
+    return { piece: surface.piece, brokenOutside: surface.kind === BROKEN_OUTSIDE, start, count: surface.corners };
+  });
   const count = merger.vertices;
   return {
     positions: merger.positions.subarray(0, 3 * count),
@@ -137,6 +148,6 @@ export function mergePieces(glb, pieces) {
     normals: merger.normals.subarray(0, 4 * count),
     damage: merger.damage.subarray(0, count),
     indices: merger.indices,
-    hidden: ends[BROKEN_OUTSIDE],
+    parts: parts.sort((a, b) => a.start - b.start),
   };
 }

@@ -131,23 +131,25 @@ export const shadowFragment = /* glsl */ `
 `;
 
 export const floorVertex = /* glsl */ `
+  uniform float radius;
   out vec2 place;
   void main() {
-    place = position.xz;
+    place = radius * position.xz;
     gl_Position = projectionMatrix * viewMatrix * modelMatrix * vec4(position, 1.0);
   }
 `;
 
-/** A level floor with lines a \`spacing\` apart, stronger at each tenth, that fades out with the distance. */
+/** A level floor with lines a `spacing` apart and as many pixels thick, stronger at each tenth; it fades out. */
 export const floorFragment = /* glsl */ `
   uniform vec3 colour;
   uniform float spacing;
   uniform float radius;
+  uniform float thickness;
   in vec2 place;
   float lines(float every) {
     vec2 x = place / every;
     vec2 width = fwidth(x);
-    vec2 line = 1.0 - smoothstep(vec2(0.0), 1.2 * width, abs(fract(x - 0.5) - 0.5));
+    vec2 line = 1.0 - smoothstep(vec2(0.0), thickness * width, abs(fract(x - 0.5) - 0.5));
     return max(line.x, line.y) * (1.0 - smoothstep(0.15, 0.6, max(width.x, width.y)));
   }
   void main() {

@@ -1,235 +1,162 @@
-// The picture: renderer, camera, floor, and the merged mesh of all pieces.
+// The picture: renderer, camera, and when it is drawn how finely.
 import {
-  BufferAttribute,
-  BufferGeometry,
   Color,
-  DataTexture,
   DoubleSide,
-  FloatType,
-  LinearFilter,
-  Mesh,
-  NotEqualStencilFunc,
+  FrontSide,
   PerspectiveCamera,
-  PlaneGeometry,
-  RGBAFormat,
-  ReplaceStencilOp,
-  SRGBColorSpace,
   Scene,
-  ShaderMaterial,
-  Vector2,
-  Vector3,
-  Vector4,
   WebGLRenderTarget,
   WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { POSE } from "../data/pieces.js";
-import { rampBytes } from "./colours.js";
-import * as shaders from "./shaders.js";
+import { drawsInSoftware } from "./graphics.js";
+import {
+  floorLayer,
+  meshGeometry,
+  pickLayer,
+  pieceTexture,
+  runsOf,
+  shadowLayer,
+  surfaceLayer,
+  texelOf,
+} from "./layers.js";
 
-const ROW = 4 * shaders.TEXELS * shaders.PIECES_PER_ROW;
+const MODES = ["material", "piece", "damage"];
 
-// Where the numbers of a piece begin among those of the texture.
-const texelOf = (piece) =>
-  Math.floor(piece / shaders.PIECES_PER_ROW) * ROW + (piece % shaders.PIECES_PER_ROW) * 4 * shaders.TEXELS;
+/** Most pixels of a picture; a graphics card fills more, and software fewer, than anybody sees. */
+const MOST_PIXELS = { card: 12e6, software: 4e6, softwareMoving: 1e6 };
+const FINEST = 2; // pixels of the picture per pixel of the page
+/** What moves is drawn quickly in software; so long after the last change it is drawn well [ms]. */
+const REST = 350;
 
-function pieceTexture(count) {
-  const rows = Math.max(1, Math.ceil(count / shaders.PIECES_PER_ROW));
-  const width = shaders.TEXELS * shaders.PIECES_PER_ROW;
-  return new DataTexture(new Float32Array(ROW * rows), width, rows, RGBAFormat, FloatType);
-}
-
-function rampTexture(name) {
-  const texture = new DataTexture(rampBytes(name), 256, 1, RGBAFormat);
-  texture.colorSpace = SRGBColorSpace;
-  texture.minFilter = texture.magFilter = LinearFilter;
-  texture.needsUpdate = true;
-  return texture;
-}
-
-// Linear colour and roughness of each material of the file.
-function materialColours(materials) {
-  const colours = Array.from({ length: shaders.MATERIALS }, (_, i) => {
-    const surface = materials[Math.min(i, materials.length - 1)]?.pbrMetallicRoughness ?? {};
-    const [r, g, b] = surface.baseColorFactor ?? [0.6, 0.6, 0.6];
-    return new Vector4(r, g, b, surface.roughnessFactor ?? 1);
-  });
-  return colours;
-}
-
-function meshGeometry(mesh) {
-  const geometry = new BufferGeometry();
-  geometry.setAttribute("position", new BufferAttribute(mesh.positions, 3));
-  geometry.setAttribute("key", new BufferAttribute(mesh.keys, 1));
-  geometry.setAttribute("shade", new BufferAttribute(mesh.normals, 4, true));
-  geometry.setAttribute("damage", new BufferAttribute(mesh.damage, 1));
-  geometry.setIndex(new BufferAttribute(mesh.indices, 1));
-  return geometry;
-}
-
-function drawn(geometry, settings) {
-  const mesh = new Mesh(geometry, new ShaderMaterial({ side: DoubleSide, ...settings }));
-  mesh.frustumCulled = false;
-  mesh.matrixAutoUpdate = false;
-  return mesh;
-}
-
-// Shadows of several pieces on one spot darken it once.
-const ONCE = { stencilWrite: true, stencilRef: 1, stencilFunc: NotEqualStencilFunc, stencilZPass: ReplaceStencilOp };
-
-/** Throws when the browser has no WebGL 2. */
+/** Event `drawn`. Its canvas has data-still while it shows the newest state as well as it can be drawn. */
 export class Stage extends EventTarget {
-  /** `materials`: of the file; `mesh`: mergePieces; `damageRange` [s]; `ground`: its height [m], null: none. */
+  /**
+   * `materials`: of the file; `count` of the pieces; `mesh`: mergePieces; `damageRange` [s]; `ground`: its height [m], null:
+   * none. Throws when the browser has no WebGL 2.
+   */
   constructor(canvas, { materials, count, mesh, damageRange, ground }) {
     super();
     this.canvas = canvas;
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, stencil: true, powerPreference: "high-performance" });
-    this.ratio = Math.min(window.devicePixelRatio, 2);
-    this.renderer.setPixelRatio(this.ratio);
+    this.slow = drawsInSoftware();
+    this.renderer = new WebGLRenderer({ canvas, antialias: !this.slow, stencil: true });
+    // The check waits for the compiler; a program that does not compile is named in the console in any case.
+    this.renderer.debug.checkShaderErrors = false;
     this.scene = new Scene();
     this.scene.background = new Color();
     this.camera = new PerspectiveCamera(35, 1, 0.01, 100);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener("change", () => this.request());
     this.texture = pieceTexture(count);
-    this.hidden = mesh.hidden;
-    this.buildMesh(mesh, materials, damageRange);
-    if (ground !== null) this.buildFloor(ground);
+    this.parts = mesh.parts;
+    this.outsideHidden = false;
+    this.selected = null;
+    this.geometry = meshGeometry(mesh);
+    this.surface = surfaceLayer(this.geometry, { texture: this.texture, materials, damageRange });
+    this.scene.add(this.surface);
+    this.picking = new Scene().add(pickLayer(this.geometry, this.texture));
+    this.pixel = new WebGLRenderTarget(1, 1);
+    if (ground !== null) this.addFloor(ground);
     this.applyTheme();
   }
 
-  buildMesh(mesh, materials, damageRange) {
-    this.geometry = meshGeometry(mesh);
-    this.uniforms = {
-      pieces: { value: this.texture },
-      materials: { value: materialColours(materials) },
-      mode: { value: 0 },
-      damageRange: { value: new Vector2(...damageRange) },
-      ramps: { value: rampTexture("damage") },
-      accent: { value: new Color() },
-      up: { value: new Vector3() },
-      exposure: { value: 1 },
-    };
-    const { surfaceVertex: vertexShader, surfaceFragment: fragmentShader } = shaders;
-    this.surface = drawn(this.geometry, { uniforms: this.uniforms, vertexShader, fragmentShader });
-    this.scene.add(this.surface);
-    this.picking = new Scene();
-    this.picking.add(
-      drawn(this.geometry, {
-        uniforms: { pieces: this.uniforms.pieces },
-        vertexShader: shaders.pickVertex,
-        fragmentShader: shaders.pickFragment,
-      }),
-    );
-    this.pixel = new WebGLRenderTarget(1, 1);
+  addFloor(ground) {
+    this.controls.maxPolarAngle = Math.PI / 2 - 0.02;
+    this.floor = floorLayer(ground);
+    this.shadow = shadowLayer(this.geometry, { texture: this.texture, ground });
+    this.scene.add(this.floor, this.shadow);
   }
 
-  buildFloor(ground) {
-    this.controls.maxPolarAngle = Math.PI / 2 - 0.02;
-    this.floorUniforms = { colour: { value: new Color() }, spacing: { value: 1 }, radius: { value: 1 } };
-    this.floor = drawn(new PlaneGeometry(2, 2).rotateX(-Math.PI / 2), {
-      uniforms: this.floorUniforms,
-      vertexShader: shaders.floorVertex,
-      fragmentShader: shaders.floorFragment,
-      transparent: true,
-      depthWrite: false,
-    });
-    this.floor.matrixAutoUpdate = true;
-    this.floor.position.y = ground;
-    this.floor.renderOrder = 1;
-    this.shadowUniforms = {
-      pieces: this.uniforms.pieces,
-      ground: { value: ground },
-      reach: { value: 1 },
-      strength: { value: 0.3 },
-    };
-    this.shadow = drawn(this.geometry, {
-      uniforms: this.shadowUniforms,
-      vertexShader: shaders.shadowVertex,
-      fragmentShader: shaders.shadowFragment,
-      transparent: true,
-      depthWrite: false,
-      ...ONCE,
-    });
-    this.shadow.renderOrder = 2;
-    this.scene.add(this.floor, this.shadow);
+  uniforms(layer) {
+    return [layer.material].flat()[0].uniforms;
   }
 
   /** Colours of the page's style: it may be light or dark. */
   applyTheme() {
     const style = getComputedStyle(this.canvas);
-    const colour = (name) => style.getPropertyValue(name).trim();
-    this.scene.background.set(colour("--stage"));
-    this.uniforms.accent.value.set(colour("--stage-accent"));
-    this.uniforms.exposure.value = Number(colour("--stage-exposure"));
-    if (this.floor) this.floorUniforms.colour.value.set(colour("--stage-line"));
-    if (this.floor) this.shadowUniforms.strength.value = Number(colour("--stage-shadow"));
+    const value = (name) => style.getPropertyValue(name).trim();
+    this.scene.background.set(value("--stage"));
+    this.uniforms(this.surface).accent.value.set(value("--stage-accent"));
+    this.uniforms(this.surface).exposure.value = Number(value("--stage-exposure"));
+    if (this.floor) this.uniforms(this.floor).colour.value.set(value("--stage-line"));
+    if (this.floor) this.uniforms(this.shadow).strength.value = Number(value("--stage-shadow"));
     this.request();
   }
 
-  /** Lines of the floor lie `spacing` apart [m]. */
+  /** For a scene of a size about a centre; lines lie `spacing` apart [m]. */
   scaleFloor(centre, radius, spacing) {
     if (!this.floor) return;
-    const reach = 8 * radius;
     const snapped = (x) => Math.round(x / (10 * spacing)) * 10 * spacing;
     this.floor.position.x = snapped(centre[0]);
     this.floor.position.z = snapped(centre[2]);
-    this.floor.scale.set(1, 1, 1);
-    this.floor.geometry.dispose();
-    this.floor.geometry = new PlaneGeometry(2 * reach, 2 * reach).rotateX(-Math.PI / 2);
-    this.floorUniforms.radius.value = reach;
-    this.floorUniforms.spacing.value = spacing;
-    this.shadowUniforms.reach.value = 3 * radius;
+    this.floor.scale.setScalar(8 * radius);
+    this.uniforms(this.floor).radius.value = 8 * radius;
+    this.uniforms(this.floor).spacing.value = spacing;
+    this.uniforms(this.shadow).reach.value = 3 * radius;
   }
 
   /** Poses as posesAt gives them. */
   setPoses(poses) {
-    const data = this.texture.image.data;
+    const { data } = this.texture.image;
     for (let i = 0, p = 0; p < poses.length; ++i, p += POSE) {
       const t = texelOf(i);
       for (let k = 0; k < POSE; ++k) data[t + k] = poses[p + k];
     }
+    this.chooseRuns();
+    this.changed();
+  }
+
+  // Only pieces that exist now are drawn.
+  chooseRuns() {
+    const { data } = this.texture.image;
+    const hidden = ({ brokenOutside }) => brokenOutside && this.outsideHidden;
+    this.geometry.groups = runsOf(this.parts, (part) => data[texelOf(part.piece) + 3] > 0 && !hidden(part));
+  }
+
+  changed() {
     this.texture.needsUpdate = true;
     this.request();
   }
 
   /** Linear RGB of each piece, shown where the mode is "piece". */
-  setPieceColours(colourOf) {
-    const data = this.texture.image.data;
-    for (let i = 0; texelOf(i) < data.length && i < colourOf.length; ++i) data.set(colourOf[i], texelOf(i) + POSE);
-    this.texture.needsUpdate = true;
-    this.request();
+  setPieceColours(colours) {
+    const { data } = this.texture.image;
+    colours.forEach((colour, i) => data.set(colour, texelOf(i) + POSE));
+    this.changed();
   }
 
   /** "material", "piece" (setPieceColours) or "damage". */
   setMode(mode) {
-    this.uniforms.mode.value = ["material", "piece", "damage"].indexOf(mode);
+    this.uniforms(this.surface).mode.value = MODES.indexOf(mode);
     this.request();
   }
 
   hideOutside(hide) {
-    const begin = hide ? this.hidden : 0;
-    this.geometry.setDrawRange(begin, this.geometry.index.count - begin);
+    this.outsideHidden = hide;
+    // Without their outsides one looks into pieces from behind.
+    this.surface.material[0].side = hide ? DoubleSide : FrontSide;
+    this.surface.material[0].needsUpdate = true;
+    this.chooseRuns();
     this.request();
   }
 
   /** Null: none. */
   select(piece) {
-    const data = this.texture.image.data;
-    if (this.selected !== undefined && this.selected !== null) data[texelOf(this.selected) + POSE + 3] = 0;
+    const { data } = this.texture.image;
+    if (this.selected !== null) data[texelOf(this.selected) + POSE + 3] = 0;
     if (piece !== null) data[texelOf(piece) + POSE + 3] = 1;
     this.selected = piece;
-    this.texture.needsUpdate = true;
-    this.request();
+    this.changed();
   }
 
   /** Looks at a sphere from the side that the camera is on. */
   lookAt(centre, radius) {
     const direction = this.camera.position.clone().sub(this.controls.target);
-    if (direction.lengthSq() === 0) direction.set(0.55, 0.38, 1);
+    if (direction.lengthSq() === 0) direction.set(0.5, 0.32, 1);
     const half = (this.camera.fov * Math.PI) / 360;
     const narrow = Math.min(half, Math.atan(Math.tan(half) * this.camera.aspect));
-    const distance = (1.08 * radius) / Math.sin(narrow);
+    const distance = (1.05 * radius) / Math.sin(narrow);
     this.controls.target.set(...centre);
     this.camera.position.copy(this.controls.target).add(direction.setLength(distance));
     this.camera.near = distance / 200;
@@ -244,11 +171,10 @@ export class Stage extends EventTarget {
   /** Turns the camera about its target by angles [rad], and moves it by a factor of its distance. */
   orbit(around, over, factor = 1) {
     const offset = this.camera.position.clone().sub(this.controls.target);
-    const length = offset.length() * factor;
     const polar = Math.acos(offset.y / offset.length()) + over;
     const azimuth = Math.atan2(offset.x, offset.z) + around;
     const bounded = Math.min(this.controls.maxPolarAngle - 1e-3, Math.max(1e-3, polar));
-    offset.setFromSphericalCoords(length, bounded, azimuth);
+    offset.setFromSphericalCoords(offset.length() * factor, bounded, azimuth);
     this.camera.position.copy(this.controls.target).add(offset);
     this.controls.update();
     this.request();
@@ -257,16 +183,16 @@ export class Stage extends EventTarget {
   resize() {
     const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
     if (width === 0 || height === 0) return;
+    this.size = [width, height];
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
-    this.draw();
+    this.request();
   }
 
   /** The piece at a point of the canvas [CSS pixels], or null. */
   pick(x, y) {
-    const { clientWidth: width, clientHeight: height } = this.canvas;
-    this.camera.setViewOffset(width, height, x, y, 1, 1);
+    this.camera.setViewOffset(...this.size, x, y, 1, 1);
     this.renderer.setRenderTarget(this.pixel);
     this.renderer.setClearColor(0x000000, 0);
     this.renderer.clear();
@@ -279,18 +205,38 @@ export class Stage extends EventTarget {
     return number === 0 ? null : number - 1;
   }
 
-  /** Draws at the browser's next frame, however often it is asked until then. */
+  /** Draws at the browser's next frame, however often it is asked until then; in software once more, better, at rest. */
   request() {
-    if (this.requested) return;
+    delete this.canvas.dataset.still;
+    this.schedule(!this.slow);
+    clearTimeout(this.rest);
+    if (this.slow) this.rest = setTimeout(() => this.schedule(true), REST);
+  }
+
+  schedule(fine) {
+    this.fine = fine;
+    if (!this.requested) requestAnimationFrame(() => this.draw());
     this.requested = true;
-    requestAnimationFrame(() => this.draw());
+  }
+
+  setFineness(fine) {
+    const most = this.slow ? (fine ? MOST_PIXELS.software : MOST_PIXELS.softwareMoving) : MOST_PIXELS.card;
+    const wanted = this.slow ? (fine ? FINEST : 1) : Math.min(window.devicePixelRatio, FINEST);
+    const ratio = Math.min(wanted, Math.sqrt(most / (this.size[0] * this.size[1])));
+    if (ratio !== this.renderer.getPixelRatio()) this.renderer.setPixelRatio(ratio);
+    if (!this.floor) return;
+    this.shadow.visible = fine;
+    this.uniforms(this.floor).thickness.value = 1.2 * ratio;
   }
 
   draw() {
     this.requested = false;
+    if (!this.size) return;
+    this.setFineness(this.fine);
     this.camera.updateMatrixWorld();
-    this.uniforms.up.value.set(0, 1, 0).transformDirection(this.camera.matrixWorldInverse);
+    this.uniforms(this.surface).up.value.set(0, 1, 0).transformDirection(this.camera.matrixWorldInverse);
     this.renderer.render(this.scene, this.camera);
+    if (this.fine) this.canvas.dataset.still = "";
     this.dispatchEvent(new Event("drawn"));
   }
 }
