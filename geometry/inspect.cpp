@@ -9,6 +9,7 @@
 #include <boost/iterator/function_output_iterator.hpp>
 
 #include "geometry/detail/cgal_mesh.h"
+#include "geometry/detail/clean.h"
 #include "geometry/detail/inside.h"
 #include "geometry/detail/topology.h"
 #include "geometry/mass_properties.h"
@@ -87,7 +88,7 @@ int count_self_intersections(const TriangleMesh& mesh) {
 }
 
 // A shell inside an even number of others bounds material on its inner side, one inside an odd number bounds a void.
-int count_inverted_shells(const std::vector<TriangleMesh>& shells) {
+void count_shells(MeshReport& report, const std::vector<TriangleMesh>& shells) {
   std::vector<int> depth(shells.size(), 0);
   std::vector<Box> boxes;
   for (const TriangleMesh& shell : shells) boxes.push_back(bounds(shell));
@@ -98,12 +99,18 @@ int count_inverted_shells(const std::vector<TriangleMesh>& shells) {
       depth[inner] += inside(shells[inner].vertices.front());
     }
   }
-  int inverted = 0;
   for (std::size_t i = 0; i < shells.size(); ++i) {
     const bool outward = mass_properties(shells[i]).volume > 0;
-    inverted += outward != (depth[i] % 2 == 0);
+    report.inverted_shells += outward != (depth[i] % 2 == 0);
+    report.nested_shells += depth[i] % 2;
   }
-  return inverted;
+}
+
+int count_duplicates(const std::vector<Vec3>& vertices) {
+  const std::vector<int> same = detail::coincident(vertices, 0);
+  int count = 0;
+  for (std::size_t i = 0; i < same.size(); ++i) count += same[i] != static_cast<int>(i);
+  return count;
 }
 
 std::string counted(int count, const char* one, const char* many) {
@@ -132,6 +139,7 @@ std::string MeshReport::summary() const {
   add(non_manifold_vertices > 0, counted(non_manifold_vertices, "non-manifold vertex", "non-manifold vertices"));
   add(degenerate_faces > 0, counted(degenerate_faces, "degenerate face", "degenerate faces"));
   add(self_intersections > 0, counted(self_intersections, "self-intersection", "self-intersections"));
+  add(duplicate_vertices > 0, counted(duplicate_vertices, "duplicate vertex", "duplicate vertices"));
   add(inverted_shells > 0, counted(inverted_shells, "inverted shell", "inverted shells"));
   add(text.empty(), "no volume");
   return text;
@@ -146,6 +154,7 @@ MeshReport inspect(const TriangleMesh& mesh) {
     if (usable(mesh, face)) sound.faces.push_back(face);
     report.degenerate_faces += !usable(mesh, face) || collinear(mesh, face);
   }
+  report.duplicate_vertices = count_duplicates(mesh.vertices);
   for (Vec3& vertex : sound.vertices) {
     if (vertex.allFinite()) continue;
     ++report.bad_vertices;
@@ -164,7 +173,7 @@ MeshReport inspect(const TriangleMesh& mesh) {
                        report.non_manifold_vertices == 0;
   report.self_intersections = surface ? count_self_intersections(sound) : -1;
   if (report.self_intersections == 0 && report.boundary_edges == 0) {
-    report.inverted_shells = count_inverted_shells(detail::split(sound, component));
+    count_shells(report, detail::split(sound, component));
   }
   return report;
 }

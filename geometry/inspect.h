@@ -17,9 +17,11 @@ struct MeshReport {
   int bad_vertices = 0;           ///< vertices whose position is not finite
   int degenerate_faces = 0;       ///< faces of zero area, or that name a vertex twice or one that does not exist
   int self_intersections =
-      0;                    ///< pairs of faces that cross; -1 when not checked (the mesh is not a triangle surface yet)
-  int inverted_shells = 0;  ///< closed shells that point the wrong way for their nesting; 0 while shells cross
-  double volume = 0;        ///< signed [m^3]
+      0;  ///< pairs of faces that cross; -1 when not checked (the mesh is not a triangle surface yet)
+  int duplicate_vertices = 0;  ///< vertices at the position of an earlier one
+  int nested_shells = 0;       ///< closed shells inside an odd number of others: voids; 0 while shells cross
+  int inverted_shells = 0;     ///< closed shells that point the wrong way for their nesting; 0 while shells cross
+  double volume = 0;           ///< signed [m^3]
   Box box;
 
   /// Closed, manifold, free of self-intersections, outward oriented, with positive volume: what `cut` and `sample`

@@ -2,11 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cmath>
 #include <exception>
 #include <fstream>
 #include <iomanip>
 #include <limits>
+#include <set>
+#include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include <assimp/Importer.hpp>
@@ -15,6 +19,17 @@
 
 #include "core/error.h"
 #include "geometry/detail/clean.h"
+
+namespace Assimp {
+
+// Debian builds assimp with assertions that end the process, and damaged files reach them. The definition of a program
+// goes before that of a shared library: as an exception, the importer catches it and the file is refused.
+[[noreturn]] void aiAssertViolation(const char* expression, const char*, int);
+[[noreturn]] void aiAssertViolation(const char* expression, const char*, int) {
+  throw std::runtime_error(std::string("the file is damaged (") + expression + " does not hold)");
+}
+
+}  // namespace Assimp
 
 namespace sunder::geometry {
 namespace {
@@ -53,8 +68,10 @@ Vec3 unit_or_zero(const Vec3& x) {
 /// All meshes of a scene as one.
 class Collector {
  public:
-  Collector(const fs::path& file, const aiScene& scene) : file_(file), scene_(scene) {
-    if (scene.mRootNode != nullptr) append_node(*scene.mRootNode, aiMatrix4x4());
+  Collector(const fs::path& file, const aiScene& scene, const std::string& part)
+      : file_(file), scene_(scene), part_(part) {
+    if (scene.mRootNode != nullptr) append_node(*scene.mRootNode, aiMatrix4x4(), part.empty());
+    if (!part.empty() && result_.mesh.faces.empty()) fail_part();
     if (!any_uv_) result_.attributes.uv.clear();
     if (!any_normal_) result_.attributes.normal.clear();
     if (!any_colour_) result_.attributes.colour.clear();
@@ -65,10 +82,30 @@ class Collector {
   TexturedMesh take() { return std::move(result_); }
 
  private:
-  void append_node(const aiNode& node, const aiMatrix4x4& parent) {
+  void append_node(const aiNode& node, const aiMatrix4x4& parent, bool wanted) {
     const aiMatrix4x4 to_world = parent * node.mTransformation;
-    for (unsigned i = 0; i < node.mNumMeshes; ++i) append_mesh(*scene_.mMeshes[node.mMeshes[i]], to_world);
-    for (unsigned i = 0; i < node.mNumChildren; ++i) append_node(*node.mChildren[i], to_world);
+    wanted = wanted || part_ == node.mName.C_Str();
+    for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+      const aiMesh& mesh = *scene_.mMeshes[node.mMeshes[i]];
+      if (wanted || part_ == mesh.mName.C_Str()) append_mesh(mesh, to_world);
+      for (const aiString* name : {&node.mName, &mesh.mName}) {
+        if (name->length > 0) names_.insert(name->C_Str());
+      }
+    }
+    for (unsigned i = 0; i < node.mNumChildren; ++i) append_node(*node.mChildren[i], to_world, wanted);
+  }
+
+  [[noreturn]] void fail_part() const {
+    constexpr std::size_t kListed = 20;
+    std::string known;
+    std::size_t count = 0;
+    for (const std::string& name : names_) {
+      if (count++ < kListed) known.append(count > 1 ? ", '" : "'").append(name).append("'");
+    }
+    if (count > kListed) known.append(" and ").append(std::to_string(count - kListed)).append(" more");
+    fail(ErrorKind::mesh, file_,
+         "holds no part '" + part_ + "' with triangles; " +
+             (known.empty() ? "its parts have no names" : "it has " + known));
   }
 
   void append_mesh(const aiMesh& part, const aiMatrix4x4& to_world) {
@@ -140,6 +177,8 @@ class Collector {
 
   const fs::path& file_;
   const aiScene& scene_;
+  const std::string& part_;
+  std::set<std::string> names_;  // of nodes with meshes, and of meshes
   TexturedMesh result_;
   bool any_uv_ = false, any_normal_ = false, any_colour_ = false;
 };
@@ -157,8 +196,46 @@ void require_honest_off_header(const fs::path& file) {
   }
 }
 
-TexturedMesh read(const fs::path& file) {
-  if (!fs::is_regular_file(file)) fail(ErrorKind::io, file, "no such file");
+// What a file says of itself. FBX counts in units of so many centimetres; assimp applies neither unit nor axis of it.
+struct Stated {
+  std::optional<double> metres_per_unit;
+  std::optional<UpAxis> up;
+};
+
+Stated stated_by(const aiScene& scene) {
+  Stated stated;
+  if (scene.mMetaData == nullptr) return stated;
+  double centimetres = 0;
+  float single = 0;
+  if (!scene.mMetaData->Get("UnitScaleFactor", centimetres) && scene.mMetaData->Get("UnitScaleFactor", single))
+    centimetres = single;
+  if (std::isfinite(centimetres) && centimetres > 0) stated.metres_per_unit = centimetres / 100;
+  std::int32_t axis = -1;
+  if (scene.mMetaData->Get("UpAxis", axis) && axis >= 0 && axis <= 2)
+    stated.up = std::array{UpAxis::x, UpAxis::y, UpAxis::z}[static_cast<std::size_t>(axis)];
+  return stated;
+}
+
+void require_readable(const fs::path& file) {
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (!fs::exists(status)) fail(ErrorKind::io, file, "no such file");
+  if (fs::is_directory(status)) fail(ErrorKind::io, file, "is a folder, not a mesh file");
+  if (!fs::is_regular_file(status)) fail(ErrorKind::io, file, "is no regular file");
+  std::ifstream in(file, std::ios::binary);
+  if (!in) fail(ErrorKind::io, file, "cannot be opened: " + std::generic_category().message(errno));
+  if (in.peek() == std::ifstream::traits_type::eof()) fail(ErrorKind::io, file, "is empty");
+}
+
+std::string reason_of(const Assimp::Importer& importer, const fs::path& file) {
+  const std::string reason = importer.GetErrorString();
+  const bool known = importer.IsExtensionSupported(file.extension().string());
+  return (reason.empty() ? "cannot be read" : reason) +
+         (known ? "" : "; is '" + file.extension().string() + "' the right extension?");
+}
+
+TexturedMesh read(const fs::path& file, const LoadSettings& settings) {
+  require_readable(file);
   if (file.extension() == ".off") require_honest_off_header(file);
   Assimp::Importer importer;
   constexpr int kIgnored = aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_TEXTURES | aiComponent_LIGHTS |
@@ -170,8 +247,12 @@ TexturedMesh read(const fs::path& file) {
   } catch (const std::exception& error) {
     fail(ErrorKind::io, file, error.what());
   }
-  if (scene == nullptr) fail(ErrorKind::io, file, importer.GetErrorString());
-  return Collector(file, *scene).take();
+  if (scene == nullptr) fail(ErrorKind::io, file, reason_of(importer, file));
+  TexturedMesh result = Collector(file, *scene, settings.part).take();
+  const Stated stated = stated_by(*scene);
+  result.metres_per_unit = settings.metres_per_unit.value_or(stated.metres_per_unit.value_or(1));
+  result.up = settings.up.value_or(stated.up.value_or(UpAxis::y));
+  return result;
 }
 
 template <typename T>
@@ -224,7 +305,7 @@ void write_off(std::ostream& out, const TriangleMesh& mesh) {
 }  // namespace
 
 TexturedMesh load_textured_mesh(const fs::path& file, const LoadSettings& settings) {
-  TexturedMesh result = read(file);
+  TexturedMesh result = read(file, settings);
   if (result.mesh.faces.empty()) fail(ErrorKind::mesh, file, "holds no triangle");
   for (const Vec3& vertex : result.mesh.vertices) {
     if (!vertex.allFinite()) fail(ErrorKind::mesh, file, "holds a vertex whose position is not a finite number");
@@ -233,8 +314,8 @@ TexturedMesh load_textured_mesh(const fs::path& file, const LoadSettings& settin
   if (result.mesh.faces.empty()) {
     fail(ErrorKind::mesh, file, "holds only triangles that have shrunk to a line or a point");
   }
-  const Mat3 rotation = rotation_to_y_up(settings.up);
-  result.mesh = transformed(result.mesh, settings.metres_per_unit * rotation, Vec3::Zero());
+  const Mat3 rotation = rotation_to_y_up(result.up);
+  result.mesh = transformed(result.mesh, result.metres_per_unit * rotation, Vec3::Zero());
   turn_normals(result, rotation);
   return result;
 }

@@ -73,14 +73,14 @@ RepairResult repair(const TriangleMesh& mesh, const RepairSettings& settings) {
   RepairResult result;
   result.before = inspect(mesh);
   take(result, mesh, result.before, {});
-  if (result.solid) return result;
+  if (result.solid && !settings.force_remesh) return result;
   Steps steps;
   const TriangleMesh clean = detail::cleaned(mesh, steps);
   if (clean.faces.empty()) return take(result, clean, inspect(clean), steps), result;
   const TriangleMesh closed = closed_surface(clean, steps);
   const TriangleMesh mended = detail::outward(detail::without_crossings(closed, steps), steps);
   take(result, mended, inspect(mended), steps);
-  if (!result.solid && settings.allow_remesh) remesh(result, closed, settings);
+  if (settings.force_remesh || (!result.solid && settings.allow_remesh)) remesh(result, closed, settings);
   return result;
 }
 

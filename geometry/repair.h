@@ -13,6 +13,8 @@ struct RepairSettings {
   double remesh_voxel = 1.0 / 250;
   /// Allow the last resort. It rounds sharp edges and changes the surface by up to about a voxel.
   bool allow_remesh = true;
+  /// Take the last resort in any case, also for a solid: for even meshes, or to unite what only touches.
+  bool force_remesh = false;
 };
 
 struct RepairResult {

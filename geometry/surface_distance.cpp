@@ -1,6 +1,9 @@
 #include "geometry/surface_distance.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <unordered_map>
 #include <utility>
 
 #include <CGAL/AABB_traits.h>
@@ -10,6 +13,7 @@
 #include <tbb/parallel_for.h>
 
 #include "core/error.h"
+#include "core/random.h"
 
 namespace sunder::geometry {
 namespace {
@@ -21,13 +25,47 @@ using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
 
 Kernel::Point_3 point_of(const Vec3& x) { return {x.x(), x.y(), x.z()}; }
 
-// Vertices, each once, and centres of faces.
-std::vector<Vec3> probes(const TriangleMesh& mesh) {
+struct PositionHash {
+  std::size_t operator()(const std::array<double, 3>& x) const {
+    std::size_t hash = 0;
+    for (const double value : x) hash = mix(hash ^ std::bit_cast<std::uint64_t>(value));
+    return hash;
+  }
+};
+
+// Numbers positions, equal ones alike.
+class Positions {
+ public:
+  int number(const Vec3& x) {
+    return numbers_.try_emplace({x.x(), x.y(), x.z()}, static_cast<int>(numbers_.size())).first->second;
+  }
+
+ private:
+  std::unordered_map<std::array<double, 3>, int, PositionHash> numbers_;
+};
+
+using Corners = std::array<int, 3>;
+
+std::vector<Corners> numbered(const TriangleMesh& mesh, Positions& positions) {
+  std::vector<Corners> faces;
+  for (const auto& [a, b, c] : mesh.faces) {
+    Corners corners = {positions.number(mesh.vertices[a]), positions.number(mesh.vertices[b]),
+                       positions.number(mesh.vertices[c])};
+    std::sort(corners.begin(), corners.end());
+    faces.push_back(corners);
+  }
+  return faces;
+}
+
+// Vertices and centres of the faces that `known` has not; those that it has are at no distance.
+std::vector<Vec3> probes(const TriangleMesh& mesh, const std::vector<Corners>& faces, std::vector<Corners> known) {
+  std::sort(known.begin(), known.end());
   std::vector<char> used(mesh.vertices.size(), 0);
   std::vector<Vec3> points;
-  for (const Triangle& face : mesh.faces) {
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    if (std::binary_search(known.begin(), known.end(), faces[f])) continue;
     Vec3 sum = Vec3::Zero();
-    for (const int vertex : face) {
+    for (const int vertex : mesh.faces[f]) {
       const Vec3& x = mesh.vertices[vertex];
       if (!std::exchange(used[vertex], 1)) points.push_back(x);
       sum += x;
@@ -37,9 +75,10 @@ std::vector<Vec3> probes(const TriangleMesh& mesh) {
   return points;
 }
 
-double one_way(const TriangleMesh& from, const TriangleMesh& to) {
+double largest_distance(const TriangleMesh& surface, const std::vector<Vec3>& points) {
   double largest = 0;
-  for (const SurfacePoint& point : nearest_on(to, probes(from))) largest = std::max(largest, point.distance);
+  if (points.empty()) return largest;
+  for (const SurfacePoint& point : nearest_on(surface, points)) largest = std::max(largest, point.distance);
   return largest;
 }
 
@@ -71,7 +110,9 @@ std::vector<SurfacePoint> nearest_on(const TriangleMesh& surface, std::span<cons
 }
 
 double hausdorff_distance(const TriangleMesh& a, const TriangleMesh& b) {
-  return std::max(one_way(a, b), one_way(b, a));
+  Positions positions;
+  const std::vector<Corners> faces_a = numbered(a, positions), faces_b = numbered(b, positions);
+  return std::max(largest_distance(b, probes(a, faces_a, faces_b)), largest_distance(a, probes(b, faces_b, faces_a)));
 }
 
 }  // namespace sunder::geometry

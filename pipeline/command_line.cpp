@@ -6,8 +6,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "geometry/inspect.h"
 #include "geometry/load.h"
+#include "pipeline/inspect_command.h"
 #include "pipeline/progress_display.h"
 #include "pipeline/report_command.h"
 #include "pipeline/scene_commands.h"
@@ -20,20 +20,11 @@ namespace {
 
 const std::map<std::string, Quality> quality_words = {
     {"draft", Quality::draft}, {"preview", Quality::preview}, {"final", Quality::final}};
+const std::map<std::string, geometry::UpAxis> axes = {
+    {"x", geometry::UpAxis::x}, {"y", geometry::UpAxis::y}, {"z", geometry::UpAxis::z}};
 const std::map<std::string, LogFormat> log_words = {{"text", LogFormat::text}, {"json", LogFormat::json}};
 const std::map<std::string, ProgressFormat> progress_words = {
     {"auto", ProgressFormat::by_log}, {"openjd", ProgressFormat::openjd}, {"off", ProgressFormat::off}};
-
-int inspect_command(const std::string& file, double unit) {
-  geometry::LoadSettings settings;
-  settings.metres_per_unit = unit;
-  const geometry::MeshReport report = geometry::inspect(geometry::load_mesh(file, settings));
-  const Vec3 size = report.box.sizes();
-  std::cout << file << ": " << report.summary() << "\n"
-            << report.vertices << " vertices, " << report.faces << " faces, " << report.shells << " shells, size "
-            << size[0] << " x " << size[1] << " x " << size[2] << " m, volume " << report.volume << " m^3" << std::endl;
-  return report.is_solid() ? 0 : static_cast<int>(ErrorKind::mesh);
-}
 
 int validate_command(const ValidateOptions& options) {
   const auto progress = make_progress_display({});
@@ -112,9 +103,16 @@ void add_still_options(CLI::App& app, StillOptions& options, std::string& out) {
   app.add_option("--voxel", options.fracture.voxel_size, "Voxel size of that grid [m]")->check(CLI::PositiveNumber);
 }
 
+void add_inspect(CLI::App& app, InspectOptions& options) {
+  app.add_option("mesh", options.mesh, "Mesh file")->required();
+  app.add_option("--unit", options.load.metres_per_unit, "Metres per unit of the file")->check(CLI::PositiveNumber);
+  app.add_option("--up", options.load.up, "Up axis of the file: x, y or z")->transform(CLI::CheckedTransformer(axes));
+  app.add_option("--part", options.load.part, "Only the mesh or node of this name");
+  app.add_option("--height", options.height, "Scale the mesh to this height [m]")->check(CLI::PositiveNumber);
+  app.add_flag("--json", options.json, "As JSON");
+}
+
 void add_fracture(CLI::App& app, StillArguments& arguments) {
-  static const std::map<std::string, geometry::UpAxis> axes = {
-      {"x", geometry::UpAxis::x}, {"y", geometry::UpAxis::y}, {"z", geometry::UpAxis::z}};
   FractureOptions& options = arguments.fracture;
   app.add_option("mesh", options.mesh, "Mesh file, or a name of assets/meshes.toml")->required();
   app.add_option("--at", arguments.at, "Where it is hit: x,y,z [m], the nearest point of the surface")
@@ -171,8 +169,8 @@ int dispatch(int argc, char** argv, LogSettings& log) {
   auto* run_app = app.add_subcommand("run", "Simulate a scene");
   add_run(*run_app, run_arguments, log);
 
-  std::string check_file, mesh_file;
-  double unit = 1;
+  std::string check_file;
+  InspectOptions inspect_options;
   std::optional<Quality> check_quality;
   bool check_json = false;
   auto* check_app =
@@ -182,8 +180,7 @@ int dispatch(int argc, char** argv, LogSettings& log) {
       ->transform(CLI::CheckedTransformer(quality_words));
   check_app->add_flag("--json", check_json, "Say the effects as JSON");
   auto* inspect_app = app.add_subcommand("inspect", "Say whether a mesh is a closed solid, and what is wrong with it");
-  inspect_app->add_option("mesh", mesh_file, "Mesh file")->required();
-  inspect_app->add_option("--unit", unit, "Metres per unit of the file")->check(CLI::PositiveNumber);
+  add_inspect(*inspect_app, inspect_options);
 
   StillArguments still;
   auto* fracture_app =
@@ -213,7 +210,7 @@ int dispatch(int argc, char** argv, LogSettings& log) {
   if (*extract_app) return extract_command(still, log);
   if (*report_app) return report_command(report_folder);
   if (*validate_app) return validate_command(validate_options);
-  return inspect_command(mesh_file, unit);
+  return inspect_command(inspect_options);
 }
 
 int fail(const LogSettings& log, int code, const std::string& message) {

@@ -181,7 +181,13 @@ std::string to_json(const Report& report, const output::Sequence& sequence) {
     fractures.push_back(fracture_json(f));
     solve_seconds += f.seconds.solve;
   }
-  for (const RepairRecord& r : report.repairs) repairs.push_back({{"body", r.body}, {"steps", r.steps}});
+  for (const RepairRecord& r : report.repairs)
+    repairs.push_back({{"body", r.body},
+                       {"steps", r.repair.steps},
+                       {"remeshed", r.repair.remeshed},
+                       {"volume_before", r.repair.volume_before},
+                       {"volume_after", r.repair.volume_after},
+                       {"hausdorff", r.repair.hausdorff}});
   const auto& s = report.seconds;
   Json json = {
       {"version", SUNDER_VERSION},

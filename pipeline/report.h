@@ -8,6 +8,7 @@
 #include "output/sequence.h"
 #include "pipeline/effects.h"
 #include "pipeline/fracture.h"
+#include "pipeline/scene.h"
 #include "rigid/world.h"
 
 namespace sunder::pipeline {
@@ -53,7 +54,7 @@ ExtractRecord record_of(const crack::Extraction& extraction);
 
 struct RepairRecord {
   std::string body;
-  std::vector<std::string> steps;
+  MeshRepair repair;
 };
 
 /// How bodies moved, and what that took.

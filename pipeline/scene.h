@@ -20,6 +20,11 @@ enum class Quality { draft, preview, final };
 enum class DamageModel { front, local };
 enum class LoadModel { contact, prescribed };
 enum class Anchor { base, centre, origin };
+enum class RepairMode {
+  automatic,  ///< what is not a solid is mended
+  off,        ///< what is not a solid is refused
+  remesh      ///< remeshed through a level set in any case
+};
 
 /// A mesh by catalogue name, as a primitive with its parameters, or as a file.
 struct MeshChoice {
@@ -29,7 +34,8 @@ struct MeshChoice {
   Vec3 size = Vec3::Zero();     ///< extents of a primitive, or of a file mesh stretched to them; zero: not given
   double height = 0;            ///< uniform scale to this height [m]; 0: not given
   double wall = 0;              ///< wall thickness of hollow primitives [m]; 0: their default
-  bool allow_repair = true;     ///< `repair = "off"` refuses what is not a solid
+  RepairMode repair = RepairMode::automatic;
+  double remesh_voxel = 0;  ///< of the level set [m], after scaling; 0: 1/250 of the diagonal
 };
 
 struct SceneBody {
@@ -122,13 +128,22 @@ AssetPaths default_assets();
 /// file missing: usage) "file:line: what is wrong; expected ...; did you mean ...?".
 Scene load_scene(const std::filesystem::path& file, const AssetPaths& assets = default_assets());
 
+/// What repair did to a mesh, and how far that went.
+struct MeshRepair {
+  std::vector<std::string> steps;  ///< empty: nothing
+  bool remeshed = false;
+  double volume_before = 0, volume_after = 0;  ///< signed; of an open mesh whatever the sum over its faces gives [m^3]
+  double hausdorff = 0;                        ///< distance between the surfaces (geometry::hausdorff_distance) [m]
+};
+
 /// Loads or generates the mesh, converts unit and up axis, repairs it (throws ErrorKind::mesh naming body and defect
 /// when that fails), scales it, and applies orientation and anchor: the result is in world coordinates at the start of
 /// the scene.
 struct BodyMesh {
   geometry::TriangleMesh mesh;
   geometry::SurfaceAttributes attributes;  ///< what the file's surface carries; shapes of the program carry nothing
-  std::vector<std::string> repairs;        ///< what repair did; empty: nothing
+  MeshRepair repair;
+  std::string note;  ///< what one should know of how the file was read; empty: nothing
 };
 BodyMesh body_mesh(const SceneBody& body);
 

@@ -97,7 +97,7 @@ void say_bodies(const Scene& scene, Simulation& simulation) {
     std::cout << body.name << ": " << simulation.sequence().pieces[b].mesh.faces.size() << " faces, "
               << body.material.name << (body.breakable && body.material.breakable ? "" : ", does not break") << "\n";
     for (const RepairRecord& repair : simulation.report().repairs)
-      for (const std::string& step : repair.steps)
+      for (const std::string& step : repair.repair.steps)
         if (repair.body == body.name) std::cout << "  repair: " << step << "\n";
   }
 }

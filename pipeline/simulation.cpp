@@ -95,7 +95,8 @@ void Simulation::plan_effects_of_bodies() {
 /// Adds a body of the scene to the sequence; returns its mass properties in world axes.
 RigidPart Simulation::make_piece(const SceneBody& body) {
   BodyMesh source = body_mesh(body);
-  if (!source.repairs.empty()) state_.report.repairs.push_back({body.name, source.repairs});
+  if (!source.repair.steps.empty()) state_.report.repairs.push_back({body.name, source.repair});
+  if (!source.note.empty()) state_.report.notes.push_back(source.note);
   output::Piece piece =
       detail::whole_piece(body.name, body.material.name, std::move(source.mesh), std::move(source.attributes));
   piece.id = static_cast<int>(state_.sequence.pieces.size());

@@ -34,7 +34,7 @@ SceneBody body_of(const StillOptions& options) {
   SceneBody body;
   body.name = options.mesh.stem().string();
   body.anchor = Anchor::origin;
-  body.mesh = {options.mesh.string(), options.mesh, options.load, Vec3::Zero(), options.height, 0, true};
+  body.mesh = {options.mesh.string(), options.mesh, options.load, Vec3::Zero(), options.height, 0};
   const detail::MeshCatalogue catalogue = detail::load_catalogue(assets.meshes);
   if (const auto known = catalogue.find(options.mesh.string()); known != catalogue.end()) {
     body.mesh.file = assets.mesh_cache / known->second.file;
@@ -97,6 +97,11 @@ Report report_of(const StillOptions& options, const std::string& name) {
   report.scene = name;
   report.seed = options.seed;
   return report;
+}
+
+void note_source(Report& report, const SceneBody& body, const BodyMesh& source) {
+  if (!source.repair.steps.empty()) report.repairs.push_back({body.name, source.repair});
+  if (!source.note.empty()) report.notes.push_back(source.note);
 }
 
 void finish(StillResult& result, const std::filesystem::path& out, double total) {
@@ -238,7 +243,7 @@ double spacing_of(const std::vector<Vec3>& points) {
 
 crack::DamageField damage_field(const ExtractOptions& options, const geometry::TriangleMesh& mesh) {
   geometry::DamagedPoints cloud = geometry::load_points(options.points);
-  for (Vec3& x : cloud.points) x *= options.load.metres_per_unit;
+  for (Vec3& x : cloud.points) x *= options.load.metres_per_unit.value_or(1);
   crack::DamageField field;
   const double count = static_cast<double>(cloud.points.size());
   field.spacing =
@@ -266,7 +271,7 @@ StillResult fracture_mesh(const FractureOptions& options, Progress& progress) {
     const BodyMesh source = body_mesh(body);
     output::create_folder(options.out);
     result.report = report_of(options, body.name);
-    if (!source.repairs.empty()) result.report.repairs.push_back({body.name, source.repairs});
+    note_source(result.report, body, source);
     const Cracked cracked = options.cells > 0 ? shatter(options, source.mesh, body, result.report, progress)
                                               : hit(options, source.mesh, body, result.report, progress);
     result.sequence = still_sequence(body, source, cracked, body.material.density);
@@ -287,14 +292,12 @@ StillResult extract_points(const ExtractOptions& options, Progress& progress) {
     if (!options.mesh.empty()) {
       body = body_of(options);
       source = body_mesh(body);
-      if (!source.repairs.empty()) result.report.repairs.push_back({body.name, source.repairs});
     }
     const geometry::TriangleMesh& mesh = source.mesh;
     const crack::DamageField field = damage_field(options, mesh);
     output::create_folder(options.out);
-    auto repairs = std::move(result.report.repairs);
     result.report = report_of(options, body.name);
-    result.report.repairs = std::move(repairs);
+    note_source(result.report, body, source);
     const Asked asked(options, body, Quality::preview,
                       mesh.faces.empty() ? mpm::box_of(field.points) : geometry::bounds(mesh));
     Cracked cracked = mesh.faces.empty() ? extract_only(field, asked.crack, options.seed, progress)

@@ -190,7 +190,8 @@ void serialize(Archive& archive, FractureRecord& f) {
 
 template <class Archive>
 void serialize(Archive& archive, RepairRecord& repair) {
-  archive(repair.body, repair.steps);
+  MeshRepair& r = repair.repair;
+  archive(repair.body, r.steps, r.remeshed, r.volume_before, r.volume_after, r.hausdorff);
 }
 
 template <class Archive>

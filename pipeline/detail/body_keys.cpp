@@ -89,8 +89,20 @@ void read_wall(const Value& value, BodyDraft& draft) {
 }
 
 void read_repair(const Value& value, BodyDraft& draft) {
-  constexpr std::array<std::pair<std::string_view, bool>, 2> kChoices = {{{"auto", true}, {"off", false}}};
-  draft.body.mesh.allow_repair = value.word<bool>(kChoices);
+  constexpr std::array<std::pair<std::string_view, RepairMode>, 3> kModes = {
+      {{"auto", RepairMode::automatic}, {"off", RepairMode::off}, {"remesh", RepairMode::remesh}}};
+  draft.body.mesh.repair = value.word<RepairMode>(kModes);
+}
+
+void read_remesh_voxel(const Value& value, BodyDraft& draft) {
+  if (!draft.from_file()) value.fail("mesh '" + draft.body.mesh.name + "' is made by the program and never remeshed");
+  if (draft.body.mesh.repair == RepairMode::off) value.fail("with repair = \"off\" nothing is remeshed");
+  draft.body.mesh.remesh_voxel = value.positive();
+}
+
+void read_part(const Value& value, BodyDraft& draft) {
+  if (!draft.from_file()) value.fail("only a mesh file has parts; mesh '" + draft.body.mesh.name + "' has none");
+  draft.body.mesh.load.part = value.text();
 }
 
 void read_anchor(const Value& value, BodyDraft& draft) {
@@ -153,7 +165,7 @@ void read_motion(const Value& value, BodyDraft& draft) {
   if (draft.body.motion == Motion::fixed && moves) value.fail("a fixed body cannot have a velocity");
 }
 
-constexpr std::array<Key<BodyDraft>, 18> kBodyKeys = {{
+constexpr std::array<Key<BodyDraft>, 20> kBodyKeys = {{
     {"name", [](const Value& value, BodyDraft& draft) { draft.body.name = read_name(value); }, true},
     {"mesh", read_mesh, true},
     {"unit", read_unit},
@@ -161,7 +173,9 @@ constexpr std::array<Key<BodyDraft>, 18> kBodyKeys = {{
     {"size", read_size},
     {"height", read_height},
     {"wall", read_wall},
+    {"part", read_part},
     {"repair", read_repair},
+    {"remesh_voxel", read_remesh_voxel},
     {"anchor", read_anchor},
     {"position", [](const Value& value, BodyDraft& draft) { draft.body.position = value.vector(); }},
     {"rotation", [](const Value& value, BodyDraft& draft) { draft.body.orientation = rotation_of(value); }},

@@ -84,12 +84,12 @@ TEST_F(Load, PolygonsAreTriangulated) {
 TEST_F(Load, UnitsAndUpAxisAreConverted) {
   const fs::path cube = path("box.off");
   save_mesh(moved(box({1, 2, 3}), {10, 20, 30}), cube);
-  const Vec3 from_z = bounds(load_mesh(cube, {0.01, UpAxis::z})).center();
-  const Vec3 from_x = bounds(load_mesh(cube, {0.01, UpAxis::x})).center();
+  const Vec3 from_z = bounds(load_mesh(cube, {0.01, UpAxis::z, ""})).center();
+  const Vec3 from_x = bounds(load_mesh(cube, {0.01, UpAxis::x, ""})).center();
   EXPECT_LT((from_z - Vec3(0.1, 0.3, -0.2)).norm(), kFloat);
   EXPECT_LT((from_x - Vec3(-0.2, 0.1, 0.3)).norm(), kFloat);
-  EXPECT_TRUE(inspect(load_mesh(cube, {0.01, UpAxis::z})).is_solid());
-  EXPECT_TRUE(inspect(load_mesh(cube, {0.01, UpAxis::x})).is_solid());
+  EXPECT_TRUE(inspect(load_mesh(cube, {0.01, UpAxis::z, ""})).is_solid());
+  EXPECT_TRUE(inspect(load_mesh(cube, {0.01, UpAxis::x, ""})).is_solid());
 }
 
 // Two nodes share one mesh: moved by (5, 0, 0), and mirrored.

@@ -104,7 +104,7 @@ TEST_F(LoadTextured, NormalsTurnWithTheAxes) {
                            "vn 0 0 -1\nvn 0 -1 0\nvn -1 0 0\nvn 1 1 1\nf 1//1 3//1 2//1\nf 1//2 2//2 4//2\n"
                            "f 2//4 3//4 4//4\nf 1//3 4//3 3//3\n";
   for (const UpAxis up : {UpAxis::x, UpAxis::y, UpAxis::z}) {
-    expect_flat_normals(load_textured_mesh(file("up.obj", text), {0.01, up}), kFloat);
+    expect_flat_normals(load_textured_mesh(file("up.obj", text), {0.01, up, ""}), kFloat);
   }
 }
 

@@ -46,7 +46,7 @@ TEST(HausdorffDistance, OfSpheresIsTheGapOfTheirRadii) {
   EXPECT_EQ(distance, hausdorff_distance(large, small));
   // Facets lie inside their sphere by up to 1 - cos of half an edge's angle: 0.2 % at 5120 faces.
   EXPECT_NEAR(distance, 0.25, 0.003);
-  EXPECT_NEAR(hausdorff_distance(small, small), 0, kRounding);
+  EXPECT_EQ(hausdorff_distance(small, small), 0);
 }
 
 TEST(HausdorffDistance, SeesWhatOnlyOneOfThemHas) {

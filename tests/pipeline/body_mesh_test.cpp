@@ -104,7 +104,7 @@ TEST(BodyMesh, MakesEveryPrimitiveASolid) {
     body.mesh.height = height;
     const BodyMesh result = body_mesh(body);
     EXPECT_TRUE(geometry::inspect(result.mesh).is_solid()) << name;
-    EXPECT_TRUE(result.repairs.empty()) << name;
+    EXPECT_TRUE(result.repair.steps.empty()) << name;
     const Box box = geometry::bounds(result.mesh);
     EXPECT_NEAR(box.sizes().y(), height > 0 ? height : size.y(), 0.01 * box.sizes().y()) << name;
     EXPECT_NEAR(box.min().y(), 0, kRounding) << name;
@@ -114,9 +114,9 @@ TEST(BodyMesh, MakesEveryPrimitiveASolid) {
 TEST(BodyMesh, MendsAnOpenMeshAndSaysSo) {
   const output::ScratchFolder folder;
   const BodyMesh result = body_mesh(file_body(folder, 2));
-  EXPECT_FALSE(result.repairs.empty());
+  EXPECT_FALSE(result.repair.steps.empty());
   EXPECT_NEAR(geometry::mass_properties(result.mesh).volume, 6, kRounding);
-  EXPECT_TRUE(body_mesh(file_body(folder)).repairs.empty());
+  EXPECT_TRUE(body_mesh(file_body(folder)).repair.steps.empty());
 }
 
 std::string complaint(const SceneBody& body, ErrorKind kind) {
@@ -132,7 +132,7 @@ std::string complaint(const SceneBody& body, ErrorKind kind) {
 TEST(BodyMesh, RefusesAnOpenMeshWhenRepairIsOff) {
   const output::ScratchFolder folder;
   SceneBody body = file_body(folder, 2);
-  body.mesh.allow_repair = false;
+  body.mesh.repair = RepairMode::off;
   const std::string message = complaint(body, ErrorKind::mesh);
   EXPECT_NE(message.find("body 'crate' (line 12)"), std::string::npos) << message;
   EXPECT_NE(message.find("box.off"), std::string::npos) << message;

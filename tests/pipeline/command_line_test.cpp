@@ -68,6 +68,7 @@ TEST_F(CommandLine, AMeshThatCannotBeUsedIsThreeAndNamesTheDefect) {
   EXPECT_EQ(outcome.code, 3) << outcome.err;
   EXPECT_NE(outcome.err.find("boundary edge"), std::string::npos) << outcome.err;
   EXPECT_EQ(sunder({"inspect", (folder_ / "sheet.obj").string()}).code, 3);
+  EXPECT_EQ(sunder({"check", (folder_ / "sheet.toml").string()}).code, 3);
 }
 
 TEST_F(CommandLine, AFileThatCannotBeReadIsFive) {

@@ -62,7 +62,7 @@ TEST(Report, EveryKeyIsDocumented) {
   report.fractures.resize(1);
   report.fractures[0].energy.emplace();
   report.effects = effect_records({}, {});
-  report.repairs.push_back({"cup", {"filled 1 hole"}});
+  report.repairs.push_back({"cup", {{"filled 1 hole"}, false, 1, 1.5, 0.01}});
   const auto json = nlohmann::json::parse(to_json(report, broken_cup()));
   for (const auto& [key, value] : json.items()) EXPECT_NE(text.find(key), std::string::npos) << key;
   for (const auto& [key, value] : json["fractures"][0].items()) EXPECT_NE(text.find(key), std::string::npos) << key;

@@ -200,7 +200,7 @@ TEST_F(SceneTest, ReadsEverySection) {
   const SceneBody& body = scene.bodies.at(0);
   EXPECT_EQ(body.mesh.file, folder_ / "tetrahedron.off");
   EXPECT_EQ(body.mesh.load.up, geometry::UpAxis::z);
-  EXPECT_FALSE(body.mesh.allow_repair);
+  EXPECT_EQ(body.mesh.repair, RepairMode::off);
   EXPECT_EQ(body.anchor, Anchor::centre);
   EXPECT_EQ(body.position, Vec3(1, 2, 3));
   EXPECT_EQ(body.velocity, Vec3(0, -5, 0));
