@@ -1,8 +1,7 @@
 #include <cstdio>
 #include <cstdlib>
-#include <optional>
+#include <memory>
 #include <string>
-#include <string_view>
 
 #include <tbb/parallel_for.h>
 
@@ -22,98 +21,66 @@ using detail::TextBuffer;
 // OBJ counts positions, texture coordinates and normals of a whole file, each from 1.
 struct Numbers {
   long position = 1, uv = 1, normal = 1;
+
+  bool operator==(const Numbers&) const = default;
 };
 
 // Faces of one material with what they carry.
 struct Group {
-  std::string_view material;
+  std::string material;
   detail::VertexArrays arrays;
 };
 
-struct ObjPiece {
-  const Piece* piece = nullptr;
+std::vector<Group> groups_of(const Piece& piece) {
   std::vector<Group> groups;
-
-  explicit ObjPiece(const Piece& source) : piece(&source) {
-    for (const auto& [material, faces] : detail::faces_by_material(source))
-      groups.push_back({source.surface.material_names[static_cast<std::size_t>(material)],
-                        detail::vertex_arrays(source, faces, detail::has_texture(source, faces))});
-  }
-
-  // Those of what follows the piece.
-  Numbers after(Numbers first) const {
-    first.position += static_cast<long>(piece->mesh.vertices.size());
-    for (const Group& group : groups) {
-      first.uv += static_cast<long>(group.arrays.uv.size());
-      first.normal += static_cast<long>(group.arrays.normal.size());
-    }
-    return first;
-  }
-
-  std::size_t estimated_size() const {
-    std::size_t size = 200 + 70 * piece->mesh.vertices.size() + 24 * piece->mesh.faces.size();
-    for (const auto& [material, arrays] : groups)
-      size += 24 * arrays.uv.size() + 40 * arrays.normal.size() + 12 * arrays.corner.size();
-    return size;
-  }
-};
-
-void append_faces(TextBuffer& out, const Group& group, const Numbers& first) {
-  const detail::VertexArrays& arrays = group.arrays;
-  const bool uv = !arrays.uv.empty(), normal = !arrays.normal.empty();
-  out << "usemtl " << group.material << "\n";
-  for (std::size_t c = 0; c < arrays.corner.size(); ++c) {
-    const long corner = arrays.corner[c];
-    out << (c % 3 == 0 ? "f " : " ") << first.position + arrays.vertex[static_cast<std::size_t>(corner)];
-    if (uv) out << "/" << first.uv + corner;
-    if (normal) out << (uv ? "/" : "//") << first.normal + corner;
-    if (c % 3 == 2) out << "\n";
-  }
+  for (const auto& [material, faces] : detail::faces_by_material(piece))
+    groups.push_back({piece.surface.material_names[static_cast<std::size_t>(material)],
+                      detail::vertex_arrays(piece, faces, detail::has_texture(piece, faces))});
+  return groups;
 }
 
-void append_piece(TextBuffer& out, const ObjPiece& source, const Pose& pose, Numbers first) {
-  out << "o " << source.piece->name << "\n";
-  const Mat3 rotation = pose.orientation.toRotationMatrix();
-  for (const Vec3& vertex : source.piece->mesh.vertices) {
-    const Vec3 x = rotation * vertex + pose.position;
-    out << "v " << x.x() << " " << x.y() << " " << x.z() << "\n";
-  }
-  for (const auto& [material, arrays] : source.groups) {
-    for (const auto& [u, v] : arrays.uv) out << "vt " << u << " " << v << "\n";
-    for (const auto& n : arrays.normal) {
-      const Eigen::Vector3f turned = (rotation * Vec3(n[0], n[1], n[2])).cast<float>();
-      out << "vn " << turned.x() << " " << turned.y() << " " << turned.z() << "\n";
-    }
-  }
-  for (const Group& group : source.groups) {
-    append_faces(out, group, first);
+// Those of what follows the groups.
+Numbers after(Numbers first, const std::vector<Group>& groups) {
+  for (const Group& group : groups) {
     first.uv += static_cast<long>(group.arrays.uv.size());
     first.normal += static_cast<long>(group.arrays.normal.size());
   }
+  return first;
 }
 
-std::string frame_text(const Sequence& sequence, const Frame& frame) {
-  detail::require_finite(sequence, frame);
-  const std::size_t count = frame.poses.size();
-  std::vector<std::optional<ObjPiece>> pieces(count);
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
-    pieces[k].emplace(sequence.pieces.at(static_cast<std::size_t>(frame.poses[k].piece)));
-  });
-  std::vector<Numbers> first(1);
-  for (const auto& piece : pieces) first.push_back(piece->after(first.back()));
-  std::vector<std::string> texts(count);
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
-    TextBuffer out(pieces[k]->estimated_size());
-    append_piece(out, *pieces[k], frame.poses[k].pose, first[k]);
-    texts[k] = out.take();
-  });
-  std::size_t size = 200;
-  for (const std::string& text : texts) size += text.size();
-  TextBuffer out(size);
-  out << "# " << sequence.name << ", " << frame.time << " s; metres, Y up\n";
-  out << "mtllib " << sequence.name << ".mtl\ns off\n";
-  for (const std::string& text : texts) out << text;
-  return out.take();
+void append_posed(TextBuffer& out, const Piece& piece, const std::vector<Group>& groups, const Pose& pose) {
+  const Mat3 rotation = pose.orientation.toRotationMatrix();
+  out << "o " << piece.name << "\n";
+  for (const Vec3& vertex : piece.mesh.vertices) {
+    const Vec3 x = rotation * vertex + pose.position;
+    out << "v " << x.x() << " " << x.y() << " " << x.z() << "\n";
+  }
+  for (const Group& group : groups)
+    for (const auto& n : group.arrays.normal) {
+      const Eigen::Vector3f turned = (rotation * Vec3(n[0], n[1], n[2])).cast<float>();
+      out << "vn " << turned.x() << " " << turned.y() << " " << turned.z() << "\n";
+    }
+}
+
+void append_texture(TextBuffer& out, const std::vector<Group>& groups) {
+  for (const Group& group : groups)
+    for (const auto& [u, v] : group.arrays.uv) out << "vt " << u << " " << v << "\n";
+}
+
+void append_faces(TextBuffer& out, const std::vector<Group>& groups, Numbers first) {
+  for (const auto& [material, arrays] : groups) {
+    const bool uv = !arrays.uv.empty(), normal = !arrays.normal.empty();
+    out << "usemtl " << material << "\n";
+    for (std::size_t c = 0; c < arrays.corner.size(); ++c) {
+      const long corner = arrays.corner[c];
+      out << (c % 3 == 0 ? "f " : " ") << first.position + arrays.vertex[static_cast<std::size_t>(corner)];
+      if (uv) out << "/" << first.uv + corner;
+      if (normal) out << (uv ? "/" : "//") << first.normal + corner;
+      if (c % 3 == 2) out << "\n";
+    }
+    first.uv += static_cast<long>(arrays.uv.size());
+    first.normal += static_cast<long>(arrays.normal.size());
+  }
 }
 
 void append_material(TextBuffer& out, std::string_view name, const detail::Look& look) {
@@ -138,10 +105,13 @@ std::string frame_number(long number) {
 }
 
 void write_obj_piece(const Piece& piece, const std::filesystem::path& file) {
-  const ObjPiece source(piece);
-  TextBuffer out(source.estimated_size(), Digits::all);
+  const std::vector<Group> groups = groups_of(piece);
+  constexpr std::size_t kBytesPerFace = 150;
+  TextBuffer out(kBytesPerFace * piece.mesh.faces.size(), Digits::all);
   out << "# metres, Y up\n";
-  append_piece(out, source, {}, {});
+  append_posed(out, piece, groups, {});
+  append_texture(out, groups);
+  append_faces(out, groups, {});
   write_atomically(file, out.text());
 }
 
@@ -149,9 +119,64 @@ void write_obj_materials(const Sequence& sequence, const std::filesystem::path& 
   write_atomically(dir / (sequence.name + ".mtl"), material_text(sequence));
 }
 
-void write_obj_frame(const Sequence& sequence, std::size_t frame, const std::filesystem::path& dir) {
-  const std::string number = frame_number(static_cast<long>(sequence.start_frame) + static_cast<long>(frame));
-  write_atomically(dir / (sequence.name + "." + number + ".obj"), frame_text(sequence, sequence.frames.at(frame)));
+// Text of a piece. Only what its pose changes is written anew for every frame.
+struct ObjFrames::Kept {
+  explicit Kept(const Piece& piece) : groups(groups_of(piece)) { append_texture(texture, groups); }
+
+  void number_from(const Numbers& numbers) {
+    if (faces_from == numbers) return;
+    faces_from = numbers;
+    faces.clear();
+    append_faces(faces, groups, numbers);
+  }
+
+  std::vector<Group> groups;
+  TextBuffer posed, texture, faces;
+  Numbers faces_from = {0, 0, 0};  // before the first frame
+};
+
+ObjFrames::ObjFrames() = default;
+ObjFrames::~ObjFrames() = default;
+
+void ObjFrames::write(const Sequence& sequence, std::size_t number, const std::filesystem::path& dir) {
+  const Frame& frame = sequence.frames.at(number);
+  detail::require_finite(sequence, frame);
+  const std::size_t count = frame.poses.size();
+  std::vector<std::unique_ptr<Kept>> alive(sequence.pieces.size());
+  kept_.resize(sequence.pieces.size());
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
+    const std::size_t id = static_cast<std::size_t>(frame.poses[k].piece);
+    alive[id] = kept_[id] ? std::move(kept_[id]) : std::make_unique<Kept>(sequence.pieces[id]);
+  });
+  kept_ = std::move(alive);
+  std::vector<Numbers> first(1);
+  for (const PiecePose& pose : frame.poses) {
+    const std::size_t id = static_cast<std::size_t>(pose.piece);
+    first.push_back(after(first.back(), kept_[id]->groups));
+    first.back().position += static_cast<long>(sequence.pieces[id].mesh.vertices.size());
+  }
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
+    const std::size_t id = static_cast<std::size_t>(frame.poses[k].piece);
+    Kept& kept = *kept_[id];
+    kept.posed.clear();
+    append_posed(kept.posed, sequence.pieces[id], kept.groups, frame.poses[k].pose);
+    kept.number_from(first[k]);
+  });
+  write_atomically(
+      dir / (sequence.name + "." + frame_number(sequence.start_frame + static_cast<long>(number)) + ".obj"),
+      text(sequence, frame));
+}
+
+const std::string& ObjFrames::text(const Sequence& sequence, const Frame& frame) {
+  TextBuffer head;
+  head << "# " << sequence.name << ", " << frame.time << " s; metres, Y up\n";
+  head << "mtllib " << sequence.name << ".mtl\ns off\n";
+  text_ = head.text();
+  for (const PiecePose& pose : frame.poses) {
+    const Kept& kept = *kept_[static_cast<std::size_t>(pose.piece)];
+    text_.append(kept.posed.text()).append(kept.texture.text()).append(kept.faces.text());
+  }
+  return text_;
 }
 
 }  // namespace sunder::output

@@ -3,7 +3,9 @@
 /// whole. All lengths in metres, Y up, unless a format says otherwise. Errors of all: ErrorKind::io with the file and
 /// the system's reason, ErrorKind::internal for a pose that is not finite.
 #include <filesystem>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "output/sequence.h"
 
@@ -12,10 +14,26 @@ namespace sunder::output {
 /// "0012" for 12, "-0003" for -3: frame numbers in file names have four digits or more.
 std::string frame_number(long number);
 
-/// One frame as Wavefront OBJ: `o` per piece, `usemtl` by the surface's materials, `vt` where there is texture, `vn`
-/// where the surface has normals, 9 significant digits. File: dir/<name>.<frame number>.obj. Also writes the material
-/// file dir/<name>.mtl with the first frame.
-void write_obj_frame(const Sequence& sequence, std::size_t frame, const std::filesystem::path& dir);
+/// Frames as Wavefront OBJ: `o` per piece, `usemtl` by the surface's materials, `vt` where there is texture, `vn` where
+/// the surface has normals, 9 significant digits. An object writes frames of one sequence, in any order; it keeps the
+/// text of what the last frame shows, so that only positions and normals are written anew.
+class ObjFrames {
+ public:
+  ObjFrames();
+  ~ObjFrames();
+  ObjFrames(const ObjFrames&) = delete;
+  ObjFrames& operator=(const ObjFrames&) = delete;
+
+  /// File: dir/<name>.<frame number>.obj. Pieces may have been added to the sequence since the last frame.
+  void write(const Sequence& sequence, std::size_t frame, const std::filesystem::path& dir);
+
+ private:
+  struct Kept;
+  const std::string& text(const Sequence& sequence, const Frame& frame);
+
+  std::vector<std::unique_ptr<Kept>> kept_;  ///< by piece, of those that the last frame shows
+  std::string text_;
+};
 
 /// dir/<name>.mtl with the materials of all pieces so far.
 void write_obj_materials(const Sequence& sequence, const std::filesystem::path& dir);

@@ -85,13 +85,14 @@ std::vector<PlannedFiles> planned_files(const Scene& scene) {
   return files;
 }
 
-void write_newest_frame(const Scene& scene, const output::Sequence& sequence, const fs::path& folder) {
+void write_newest_frame(const Scene& scene, const output::Sequence& sequence, const fs::path& folder,
+                        output::ObjFrames& obj) {
   const std::size_t frame = sequence.frames.size() - 1;
   const int number = sequence.start_frame + static_cast<int>(frame);
   if (!in_range(scene, number)) return;
   if (scene.outputs.ply) output::write_ply_frame(sequence, frame, folder);
   if (!scene.outputs.obj) return;
-  output::write_obj_frame(sequence, frame, folder);
+  obj.write(sequence, frame, folder);
   if (frame == 0 || number == first_frame(scene) || newest_piece(sequence, frame) > newest_piece(sequence, frame - 1))
     output::write_obj_materials(sequence, folder);
 }

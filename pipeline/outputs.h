@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "output/sequence.h"
+#include "output/writers.h"
 #include "pipeline/report.h"
 #include "pipeline/run.h"
 #include "pipeline/scene.h"
@@ -20,8 +21,10 @@ struct PlannedFiles {
 /// What the scene asks for, in the order in which it is written.
 std::vector<PlannedFiles> planned_files(const Scene& scene);
 
-/// The files that come one a frame, for the newest frame of the sequence. Errors: ErrorKind::io.
-void write_newest_frame(const Scene& scene, const output::Sequence& sequence, const std::filesystem::path& folder);
+/// The files that come one a frame, for the newest frame of the sequence. `obj` has written the frames before, or none.
+/// Errors: ErrorKind::io.
+void write_newest_frame(const Scene& scene, const output::Sequence& sequence, const std::filesystem::path& folder,
+                        output::ObjFrames& obj);
 
 /// vdb/<piece>.####.vdb, by the number of the first frame that shows what the solve did. Errors: ErrorKind::io.
 void write_solve(const Scene& scene, const SettledSolve& solve, const std::filesystem::path& folder);

@@ -86,7 +86,7 @@ class Run {
   void record() {
     simulation_->record_frame();
     const Stopwatch watch(simulation_->report().seconds.write);
-    write_newest_frame(scene_, simulation_->sequence(), options_.out);
+    write_newest_frame(scene_, simulation_->sequence(), options_.out, obj_);
   }
 
   void save() {
@@ -98,6 +98,7 @@ class Run {
   RunOptions options_;
   std::string fingerprint_;
   std::optional<Simulation> simulation_;
+  output::ObjFrames obj_;
   int steps_ = 0;  ///< since the last frame
 };
 

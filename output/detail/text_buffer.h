@@ -14,7 +14,9 @@ enum class Digits { nine, all };
 /// Grows at its end; numbers go straight into it. Single precision always has all its digits.
 class TextBuffer {
  public:
-  explicit TextBuffer(std::size_t capacity, Digits digits = Digits::nine) : digits_(digits) { text_.reserve(capacity); }
+  explicit TextBuffer(std::size_t capacity = 0, Digits digits = Digits::nine) : digits_(digits) {
+    text_.reserve(capacity);
+  }
 
   TextBuffer& operator<<(std::string_view text) {
     text_.append(text);
@@ -27,6 +29,7 @@ class TextBuffer {
     return digits_ == Digits::all ? append(value) : append(value, std::chars_format::general, 9);
   }
 
+  void clear() { text_.clear(); }  // keeps its memory
   const std::string& text() const { return text_; }
   std::string take() { return std::move(text_); }
 

@@ -172,7 +172,10 @@ void measure_all(bench::Table& table) {
     for (std::size_t f = 0; f < sequence.frames.size(); f += frame_stride) write(f);
   };
   measure(table, "glb", folder, [&] { output::write_glb(sequence, folder / "fragments.glb"); });
-  measure(table, "obj", folder, [&] { frames([&](std::size_t f) { output::write_obj_frame(sequence, f, folder); }); });
+  measure(table, "obj", folder, [&] {
+    output::ObjFrames obj;
+    frames([&](std::size_t f) { obj.write(sequence, f, folder); });
+  });
   measure(table, "ply", folder, [&] { frames([&](std::size_t f) { output::write_ply_frame(sequence, f, folder); }); });
   measure(table, "usda", folder, [&] { output::write_usda(sequence, folder / "fragments.usda"); });
   measure(table, "csv", folder, [&] { output::write_transforms_csv(sequence, folder / "transforms.csv"); });

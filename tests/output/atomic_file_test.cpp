@@ -1,35 +1,14 @@
 /// Files are replaced whole or not at all.
 #include "output/atomic_file.h"
 
-#include <csignal>
-
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include "core/error.h"
+#include "tests/output/file_size_limit.h"
 #include "tests/output/scratch_folder.h"
 
 namespace sunder::output {
 namespace {
-
-// While it lives, no file can grow beyond `bytes`: the nearest thing to a full disk that needs no privileges.
-class FileSizeLimit {
- public:
-  explicit FileSizeLimit(rlim_t bytes) {
-    getrlimit(RLIMIT_FSIZE, &before_);
-    handler_before_ = std::signal(SIGXFSZ, SIG_IGN);
-    const rlimit limit = {bytes, before_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~FileSizeLimit() {
-    setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, handler_before_);
-  }
-
- private:
-  rlimit before_{};
-  void (*handler_before_)(int);
-};
 
 std::string complaint(const std::filesystem::path& file, std::string_view bytes) {
   try {

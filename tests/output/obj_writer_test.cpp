@@ -16,6 +16,10 @@ namespace {
 // Nine significant digits of a coordinate of order one.
 constexpr double kNineDigits = 5e-9;
 
+void write_frame(const Sequence& sequence, std::size_t frame, const std::filesystem::path& dir) {
+  ObjFrames().write(sequence, frame, dir);
+}
+
 int count(const std::string& text, const std::string& part) {
   int found = 0;
   for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
@@ -25,12 +29,12 @@ int count(const std::string& text, const std::string& part) {
 TEST(ObjWriter, NamesFilesByFrameNumber) {
   const ScratchFolder folder;
   Sequence sequence = example_sequence();
-  write_obj_frame(sequence, 0, folder.path());
+  write_frame(sequence, 0, folder.path());
   write_obj_materials(sequence, folder.path());
   EXPECT_TRUE(std::filesystem::exists(folder / "example.0008.obj"));
   EXPECT_TRUE(std::filesystem::exists(folder / "example.mtl"));
   sequence.start_frame = 9998;
-  write_obj_frame(sequence, 2, folder.path());
+  write_frame(sequence, 2, folder.path());
   EXPECT_TRUE(std::filesystem::exists(folder / "example.10000.obj"));
   EXPECT_EQ(folder.file_count(), 3u);
 }
@@ -38,8 +42,8 @@ TEST(ObjWriter, NamesFilesByFrameNumber) {
 TEST(ObjWriter, WritesPiecesAndMaterials) {
   const ScratchFolder folder;
   const Sequence sequence = example_sequence();
-  write_obj_frame(sequence, 0, folder.path());
-  write_obj_frame(sequence, 3, folder.path());
+  write_frame(sequence, 0, folder.path());
+  write_frame(sequence, 3, folder.path());
   write_obj_materials(sequence, folder.path());
   const std::string first = read_all(folder / "example.0008.obj"), text = read_all(folder / "example.0011.obj");
   EXPECT_EQ(count(first, "\no "), 1);
@@ -58,7 +62,7 @@ TEST(ObjWriter, WritesPiecesAndMaterials) {
 TEST(ObjWriter, AppliesPosesToNineDigits) {
   const ScratchFolder folder;
   const Sequence sequence = example_sequence();
-  write_obj_frame(sequence, 1, folder.path());
+  write_frame(sequence, 1, folder.path());
   const std::string text = read_all(folder / "example.0009.obj");
   std::istringstream in(text.substr(text.find("\nv ")));
   for (const Vec3& vertex : sequence.pieces[0].mesh.vertices) {
@@ -71,7 +75,7 @@ TEST(ObjWriter, AppliesPosesToNineDigits) {
 
 TEST(ObjWriter, IsReadBackAsTheSameSolids) {
   const ScratchFolder folder;
-  write_obj_frame(example_sequence(), 3, folder.path());
+  write_frame(example_sequence(), 3, folder.path());
   const geometry::TriangleMesh mesh = geometry::load_mesh(folder / "example.0011.obj");
   const double expected = 2 * 0.1234567891 / 6;
   EXPECT_NEAR(geometry::mass_properties(mesh).volume, expected, 10 * kNineDigits);
@@ -79,24 +83,41 @@ TEST(ObjWriter, IsReadBackAsTheSameSolids) {
 
 TEST(ObjWriter, SameSequenceSameBytes) {
   const ScratchFolder folder;
-  write_obj_frame(example_sequence(), 2, folder.path());
+  write_frame(example_sequence(), 2, folder.path());
   const std::string once = read_all(folder / "example.0010.obj");
-  write_obj_frame(example_sequence(), 2, folder.path());
+  write_frame(example_sequence(), 2, folder.path());
   EXPECT_EQ(read_all(folder / "example.0010.obj"), once);
+}
+
+/// What a frame shows does not depend on what was written before it.
+TEST(ObjWriter, KeptTextIsTheTextOfANewWriter) {
+  const ScratchFolder folder;
+  const std::filesystem::path kept = folder / "kept", anew = folder / "anew";
+  std::filesystem::create_directory(kept);
+  std::filesystem::create_directory(anew);
+  Sequence sequence = attributed_sequence();
+  sequence.frames.push_back({0.5, {sequence.frames[3].poses[1]}});  // the first fragment is gone: numbers move
+  ObjFrames frames;
+  for (const std::size_t f : {0u, 1u, 2u, 3u, 5u, 4u, 0u}) {
+    frames.write(sequence, f, kept);
+    write_frame(sequence, f, anew);
+    const std::string name = "example." + frame_number(8 + static_cast<long>(f)) + ".obj";
+    EXPECT_EQ(read_all(kept / name), read_all(anew / name)) << name;
+  }
 }
 
 TEST(ObjWriter, RefusesAPoseThatIsNotFinite) {
   const ScratchFolder folder;
   Sequence sequence = example_sequence();
   sequence.frames[0].poses[0].pose.position.x() = std::nan("");
-  EXPECT_THROW(write_obj_frame(sequence, 0, folder.path()), Error);
+  EXPECT_THROW(write_frame(sequence, 0, folder.path()), Error);
   EXPECT_FALSE(std::filesystem::exists(folder / "example.0008.obj"));
 }
 
 TEST(ObjWriter, MissingFolderIsAnIoError) {
   const ScratchFolder folder;
   try {
-    write_obj_frame(example_sequence(), 0, folder / "nowhere");
+    write_frame(example_sequence(), 0, folder / "nowhere");
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::io);
@@ -106,7 +127,7 @@ TEST(ObjWriter, MissingFolderIsAnIoError) {
 TEST(ObjWriter, CarriesTextureAndNormalsPerCorner) {
   const ScratchFolder folder;
   const Sequence sequence = attributed_sequence();
-  write_obj_frame(sequence, 3, folder.path());
+  write_frame(sequence, 3, folder.path());
   const std::string text = read_all(folder / "example.0011.obj");
   EXPECT_EQ(count(text, "\nvt "), 24) << "two pieces of four faces with corners of their own";
   EXPECT_EQ(count(text, "\nvn "), 24);
