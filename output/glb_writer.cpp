@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <map>
@@ -45,6 +46,22 @@ constexpr std::array<unsigned char, 67> kWhitePixel = {
     0x00, 0x00, 0x01, 0x00, 0x00, 0x00, 0x01, 0x08, 0x00, 0x00, 0x00, 0x00, 0x3a, 0x7e, 0x9b, 0x55, 0x00,
     0x00, 0x00, 0x0a, 0x49, 0x44, 0x41, 0x54, 0x78, 0xda, 0x63, 0xf8, 0x0f, 0x00, 0x01, 0x01, 0x01, 0x00,
     0x1c, 0xb0, 0x8c, 0x99, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
+
+// The double that is printed with the digits of the float and no more. It rounds to the same float.
+double short_double(float value) {
+  std::array<char, 32> digits;
+  const char* end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+  double result = 0;
+  std::from_chars(digits.data(), end, result);
+  return result;
+}
+
+template <class Values>
+std::vector<double> short_doubles(const Values& values) {
+  std::vector<double> result;
+  for (const float value : values) result.push_back(short_double(value));
+  return result;
+}
 
 class Builder {
  public:
@@ -114,14 +131,14 @@ class Builder {
 
   // Appends values to the view as a new accessor and returns its index.
   template <class T>
-  int add_accessor(View& view, std::span<const T> values, int component, int type, int width) {
+  int add_accessor(View& view, std::span<const T> values, int component, int type, std::size_t width) {
     if (view.index < 0) view.index = view_count_++;
     tinygltf::Accessor accessor;
     accessor.bufferView = view.index;
     accessor.byteOffset = view.bytes.size();
     accessor.componentType = component;
     accessor.type = type;
-    accessor.count = values.size() / static_cast<std::size_t>(width);
+    accessor.count = values.size() / width;
     view.bytes.resize(accessor.byteOffset + values.size_bytes());
     std::memcpy(view.bytes.data() + accessor.byteOffset, values.data(), values.size_bytes());
     view.bytes.resize((view.bytes.size() + 3) / 4 * 4);  // accessors start at multiples of their components' size
@@ -140,8 +157,8 @@ class Builder {
     }
     const int index = add_accessor<float>(positions_, values, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, 3);
     tinygltf::Accessor& accessor = model_.accessors[static_cast<std::size_t>(index)];
-    accessor.minValues = {box.min().x(), box.min().y(), box.min().z()};
-    accessor.maxValues = {box.max().x(), box.max().y(), box.max().z()};
+    accessor.minValues = short_doubles(box.min());
+    accessor.maxValues = short_doubles(box.max());
     return index;
   }
 
@@ -219,8 +236,8 @@ class Builder {
     node.mesh = add_mesh(piece);
     node.extras = extras(piece);
     if (!track.times.empty()) {
-      node.translation.assign(track.translations.front().begin(), track.translations.front().end());
-      node.rotation.assign(track.rotations.front().begin(), track.rotations.front().end());
+      node.translation = short_doubles(track.translations.front());
+      node.rotation = short_doubles(track.rotations.front());
     }
     if (track.visible.empty() || track.visible.front() == 0) node.scale = {0, 0, 0};
     const int index = static_cast<int>(model_.nodes.size());
@@ -233,9 +250,7 @@ class Builder {
     add_motion(node, "translation", track.times, track.translations, TINYGLTF_TYPE_VEC3);
     add_motion(node, "rotation", track.times, track.rotations, TINYGLTF_TYPE_VEC4);
     if (varies(track.visible)) {
-      std::vector<float> scales;
-      for (const float visible : track.visible) scales.insert(scales.end(), 3, visible);
-      add_channel(node, "scale", track.switch_times, scales, TINYGLTF_TYPE_VEC3, 3, "STEP");
+      add_channel(node, "scale", track.switch_times, scales_accessor(track.visible), "STEP");
     }
   }
 
@@ -251,7 +266,8 @@ class Builder {
       kept_times.push_back(times[i]);
       kept.push_back(values[i]);
     }
-    add_channel(node, path, kept_times, flat(kept), type, std::tuple_size_v<Value>, "LINEAR");
+    const int output = add_accessor<float>(motion_, flat(kept), TINYGLTF_COMPONENT_TYPE_FLOAT, type, kept[0].size());
+    add_channel(node, path, kept_times, output, "LINEAR");
   }
 
   template <class Values>
@@ -267,11 +283,10 @@ class Builder {
     return result;
   }
 
-  void add_channel(int node, const char* path, const std::vector<float>& times, const std::vector<float>& values,
-                   int type, int width, const char* interpolation) {
+  void add_channel(int node, const char* path, const std::vector<float>& times, int output, const char* interpolation) {
     tinygltf::AnimationSampler sampler;
     sampler.input = times_accessor(times);
-    sampler.output = add_accessor<float>(motion_, values, TINYGLTF_COMPONENT_TYPE_FLOAT, type, width);
+    sampler.output = output;
     sampler.interpolation = interpolation;
     tinygltf::AnimationChannel channel;
     channel.sampler = static_cast<int>(animation_.samplers.size());
@@ -287,9 +302,18 @@ class Builder {
     if (!is_new) return entry->second;
     entry->second = add_accessor<float>(motion_, times, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_SCALAR, 1);
     tinygltf::Accessor& accessor = model_.accessors[static_cast<std::size_t>(entry->second)];
-    accessor.minValues = {times.front()};
-    accessor.maxValues = {times.back()};
+    accessor.minValues = {short_double(times.front())};
+    accessor.maxValues = {short_double(times.back())};
     return entry->second;
+  }
+
+  // Nearly all pieces appear and stay.
+  int scales_accessor(const std::vector<float>& visible) {
+    const auto [entry, is_new] = scales_index_.try_emplace(visible, -1);
+    if (!is_new) return entry->second;
+    std::vector<float> scales;
+    for (const float scale : visible) scales.insert(scales.end(), 3, scale);
+    return entry->second = add_accessor<float>(motion_, scales, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, 3);
   }
 
   void finish_buffer() {
@@ -315,7 +339,7 @@ class Builder {
   int view_count_ = 0;
   std::set<std::string> textured_;  // names of materials
   std::map<std::string, int> material_index_;
-  std::map<std::vector<float>, int> times_index_;
+  std::map<std::vector<float>, int> times_index_, scales_index_;
 };
 
 }  // namespace

@@ -36,6 +36,8 @@ std::vector<double> numbers_in(std::string text) {
   return values;
 }
 
+constexpr std::string_view kCustom = "custom ";
+
 /// Reads one thing a line, as the writer lays it out.
 class UsdReader {
  public:
@@ -73,10 +75,9 @@ class UsdReader {
     const std::size_t quote = line_.find('"'), end = line_.find('"', quote + 1);
     const auto [child, is_new] = parent.children.try_emplace(line_.substr(quote + 1, end - quote - 1));
     EXPECT_TRUE(is_new) << "two prims of one name: " << line_;
-    if (line_.ends_with("(")) {
-      skip_metadata(nullptr);
-    }
-    EXPECT_TRUE(next() && line_ == "{") << line_;
+    const bool metadata_follows = line_.ends_with("(") || (next() && line_ == "(");
+    if (metadata_follows) skip_metadata(nullptr), next();
+    EXPECT_EQ(line_, "{");
     read_body(child->second);
   }
 
@@ -87,8 +88,7 @@ class UsdReader {
       } else if (const std::size_t equals = line_.find(" = "); equals != std::string::npos) {
         const std::string name = line_.substr(0, equals), value = line_.substr(equals + 3);
         if (value == "{") {
-          EXPECT_FALSE(name.starts_with("custom ")) << "not in USD's grammar: " << line_;
-          read_samples(prim, name);
+          read_samples(prim, name.starts_with(kCustom) ? name.substr(kCustom.size()) : name);
         } else if (value.ends_with(" (")) {
           prim.values[name] = value.substr(0, value.size() - 2);
           skip_metadata(nullptr);
@@ -96,7 +96,7 @@ class UsdReader {
           prim.values[name] = value;
         }
       } else {
-        EXPECT_TRUE(line_.empty() || line_.starts_with("token outputs:") || line_.starts_with("custom "))
+        EXPECT_TRUE(line_.empty() || line_.starts_with("token outputs:") || line_.starts_with(kCustom))
             << "stray line: " << line_;
       }
     }
@@ -166,6 +166,20 @@ TEST(UsdWriter, SamplesMotionAtFrames) {
   }
 }
 
+/// In USD's grammar `custom` stands at an attribute's declaration, never at its samples.
+TEST(UsdWriter, DeclaresCustomAttributesBeforeTheirSamples) {
+  const ScratchFolder folder;
+  write_usda(attributed_sequence(), folder / "fragments.usda");
+  std::istringstream in(read_all(folder / "fragments.usda"));
+  int declared = 0;
+  for (std::string line; std::getline(in, line);) {
+    const bool custom = trimmed(line).starts_with(kCustom);
+    declared += custom;
+    EXPECT_FALSE(custom && line.find(".timeSamples") != std::string::npos) << line;
+  }
+  EXPECT_GT(declared, 0);
+}
+
 TEST(UsdWriter, KeepsQuaternionsOnOneHemisphere) {
   const Prim root = written(example_sequence()).children.at("example");
   const auto& samples = root.children.at("bar_0002").samples.at("quatf xformOp:orient.timeSamples");
@@ -224,6 +238,53 @@ TEST(UsdNames, AreIdentifiersOfTheirOwn) {
   EXPECT_EQ(names("a-b"), "a_b") << "a name keeps its prim";
   EXPECT_EQ(names("3rd"), "_3rd");
   EXPECT_EQ(names(""), "_");
+}
+
+/// As single precision, which the file's types have, or as they stand where they are no numbers.
+std::vector<float> floats_in(const std::string& text) {
+  const std::vector<double> values = numbers_in(text);
+  return {values.begin(), values.end()};
+}
+
+void expect_same(const Prim& ours, const Prim& theirs, const std::string& path) {
+  SCOPED_TRACE(path);
+  ASSERT_EQ(ours.children.size(), theirs.children.size());
+  ASSERT_EQ(ours.samples.size(), theirs.samples.size());
+  EXPECT_EQ(ours.words, theirs.words);
+  for (const auto& [name, value] : ours.values) {
+    ASSERT_TRUE(theirs.values.contains(name)) << name;
+    const std::string& other = theirs.values.at(name);
+    if (floats_in(value).empty())
+      EXPECT_EQ(value, other) << name;
+    else
+      EXPECT_EQ(floats_in(value), floats_in(other)) << name;
+  }
+  for (const auto& [name, samples] : ours.samples) {
+    ASSERT_TRUE(theirs.samples.contains(name)) << name;
+    ASSERT_EQ(samples.size(), theirs.samples.at(name).size()) << name;
+    for (const auto& [frame, values] : samples) {
+      const std::vector<double>& others = theirs.samples.at(name).at(frame);
+      ASSERT_EQ(values.size(), others.size());
+      for (std::size_t i = 0; i < values.size(); ++i)
+        EXPECT_EQ(static_cast<float>(values[i]), static_cast<float>(others[i])) << name << " at " << frame;
+    }
+  }
+  for (const auto& [name, child] : ours.children) {
+    ASSERT_TRUE(theirs.children.contains(name)) << name;
+    expect_same(child, theirs.children.at(name), path + "/" + name);
+  }
+}
+
+TEST(UsdReadersSlow, TinyUsdzReadsEveryValue) {
+  const ScratchFolder folder;
+  Sequence sequence = attributed_sequence();
+  for (Frame& frame : sequence.frames)
+    for (PiecePose& pose : frame.poses) pose.twist = {Vec3(1.0 / 3, -9.81 * frame.time, 1e-7), Vec3(0, frame.time, 0)};
+  write_usda(sequence, folder / "fragments.usda");
+  const auto result = run_node("usd_layer.mjs", {folder / "fragments.usda"});
+  EXPECT_EQ(result["error"], "");
+  const Prim ours = UsdReader(read_all(folder / "fragments.usda")).read();
+  expect_same(ours, UsdReader(result["layer"]).read(), "");
 }
 
 TEST(UsdReadersSlow, ThreeJsFindsEveryPiece) {
