@@ -38,9 +38,11 @@ std::vector<Motion> motions(const Sequence& sequence) {
   return result;
 }
 
-void append(TextBuffer& out, const Vec3& v) { out << "(" << v.x() << ", " << v.y() << ", " << v.z() << ")"; }
-
-void append(TextBuffer& out, const Eigen::Vector3f& v) { out << "(" << v.x() << ", " << v.y() << ", " << v.z() << ")"; }
+template <class Vector>
+void append(TextBuffer& out, const Vector& v) {
+  for (int i = 0; i < v.size(); ++i) out << (i == 0 ? "(" : ", ") << v[i];
+  out << ")";
+}
 
 // "name = [a, b, ...]"
 template <class Count, class Item>
@@ -96,31 +98,36 @@ void append_surface(TextBuffer& out, const Piece& piece) {
       out, "int[] primvars:source_face", faces, [&](std::size_t f) { out << piece.source_face[f]; }, kUniform);
 }
 
+// What lies between two equal samples is the same: only the ends of a rest are written.
 template <class Value>
 void append_samples(TextBuffer& out, std::string_view name, const Motion& samples, const Value& value) {
   out << "        " << name << ".timeSamples = {\n";
-  for (const Sample& sample : samples) {
-    out << "            " << sample.frame << ": ";
-    value(sample);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const auto here = value(samples[i]);
+    const bool inner = i > 0 && i + 1 < samples.size();
+    if (inner && here == value(samples[i - 1]) && here == value(samples[i + 1])) continue;
+    out << "            " << samples[i].frame << ": ";
+    append(out, here);
     out << ",\n";
   }
   out << "        }\n";
 }
 
 void append_motion(TextBuffer& out, const Motion& samples) {
-  append_samples(out, "double3 xformOp:translate", samples, [&](const Sample& s) { append(out, s.pose.position); });
-  append_samples(out, "quatf xformOp:orient", samples, [&](const Sample& s) {
-    const Eigen::Vector4f q = s.pose.orientation.coeffs().cast<float>();
-    out << "(" << q.w() << ", " << q.x() << ", " << q.y() << ", " << q.z() << ")";
+  using Eigen::Vector3f, Eigen::Vector4f;
+  append_samples(out, "double3 xformOp:translate", samples, [](const Sample& s) { return s.pose.position; });
+  append_samples(out, "quatf xformOp:orient", samples, [](const Sample& s) -> Vector4f {
+    const Quat& q = s.pose.orientation;
+    return Eigen::Vector4d(q.w(), q.x(), q.y(), q.z()).cast<float>();
   });
   out << "        uniform token[] xformOpOrder = [\"xformOp:translate\", \"xformOp:orient\"]\n";
   // In USD's grammar samples cannot say `custom` themselves.
   out << "        custom vector3f sunder:velocity\n";
   append_samples(out, "vector3f sunder:velocity", samples,
-                 [&](const Sample& s) { append(out, Eigen::Vector3f(s.twist.linear.cast<float>())); });
+                 [](const Sample& s) -> Vector3f { return s.twist.linear.cast<float>(); });
   out << "        custom vector3f sunder:angularVelocity\n";
   append_samples(out, "vector3f sunder:angularVelocity", samples,
-                 [&](const Sample& s) { append(out, Eigen::Vector3f(s.twist.angular.cast<float>())); });
+                 [](const Sample& s) -> Vector3f { return s.twist.angular.cast<float>(); });
 }
 
 // A piece lives through consecutive frames.

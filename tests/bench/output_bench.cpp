@@ -1,5 +1,6 @@
 /// How fast a run is written: ./sunder bench output [--json FILE]. A thousand fragments over 240 frames, none of which
-/// rests. The baseline of each ratio is a plain write(2) of the same bytes in the same run.
+/// rests, and (`_resting`) all of which do within half of the run. The baseline of each ratio is a plain write(2) of
+/// the same bytes in the same run.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -77,23 +78,24 @@ std::vector<output::Piece> shattered_ball() {
   return pieces;
 }
 
-/// The fragments fly and turn from the second frame to the last.
-output::Sequence flying_ball() {
+/// The fragments fly and turn from the second frame on, each until a time of its own up to `last_rest` [s]: then it
+/// rests.
+output::Sequence flying_ball(std::vector<output::Piece> pieces, double last_rest) {
   output::Sequence sequence;
   sequence.name = "ball";
   sequence.frame_rate = frame_rate;
-  sequence.pieces = shattered_ball();
+  sequence.pieces = std::move(pieces);
   sequence.pieces[0].death_time = 1 / frame_rate;
   for (int f = 0; f < frame_count; ++f) {
     output::Frame frame;
     frame.time = f / frame_rate;
     for (std::uint64_t i = 1; f > 0 && i < sequence.pieces.size(); ++i) {
       const Vec3 velocity = 4 * random_vector(2, i), spin = 20 * random_vector(3, i);
-      const Vec3 fall(0, -4.905 * frame.time * frame.time, 0);
-      frame.poses.push_back(
-          {static_cast<int>(i),
-           {velocity * frame.time + fall, Quat(Eigen::AngleAxisd(spin.norm() * frame.time, spin.normalized()))},
-           {velocity, spin}});
+      const double time = std::min(frame.time, last_rest * (0.5 + 0.5 * random_unit(4, 0, i)));
+      const Vec3 fall(0, -4.905 * time * time, 0);
+      frame.poses.push_back({static_cast<int>(i),
+                             {velocity * time + fall, Quat(Eigen::AngleAxisd(spin.norm() * time, spin.normalized()))},
+                             time == frame.time ? Twist{velocity, spin} : Twist{}});
     }
     if (f == 0) frame.poses.push_back({0, {}, {}});
     sequence.frames.push_back(std::move(frame));
@@ -162,7 +164,9 @@ void measure(bench::Table& table, const std::string& name, const fs::path& folde
 }
 
 void measure_all(bench::Table& table) {
-  const output::Sequence sequence = flying_ball();
+  const std::vector<output::Piece> pieces = shattered_ball();
+  constexpr double run = frame_count / frame_rate;
+  const output::Sequence sequence = flying_ball(pieces, 2 * run), resting = flying_ball(pieces, run / 2);
   const fs::path folder = fs::temp_directory_path() / ("sunder_output_bench_" + std::to_string(getpid()));
   std::size_t faces = 0;
   for (const output::Piece& piece : sequence.pieces) faces += piece.mesh.faces.size();
@@ -172,12 +176,14 @@ void measure_all(bench::Table& table) {
     for (std::size_t f = 0; f < sequence.frames.size(); f += frame_stride) write(f);
   };
   measure(table, "glb", folder, [&] { output::write_glb(sequence, folder / "fragments.glb"); });
+  measure(table, "glb_resting", folder, [&] { output::write_glb(resting, folder / "fragments.glb"); });
   measure(table, "obj", folder, [&] {
     output::ObjFrames obj;
     frames([&](std::size_t f) { obj.write(sequence, f, folder); });
   });
   measure(table, "ply", folder, [&] { frames([&](std::size_t f) { output::write_ply_frame(sequence, f, folder); }); });
   measure(table, "usda", folder, [&] { output::write_usda(sequence, folder / "fragments.usda"); });
+  measure(table, "usda_resting", folder, [&] { output::write_usda(resting, folder / "fragments.usda"); });
   measure(table, "csv", folder, [&] { output::write_transforms_csv(sequence, folder / "transforms.csv"); });
   measure(table, "jsonl", folder, [&] { output::write_transforms_jsonl(sequence, folder / "transforms.jsonl"); });
   fs::remove_all(folder);

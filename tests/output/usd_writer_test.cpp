@@ -1,6 +1,7 @@
 /// USD text, read back by a small reader of our own and by three.js.
 #include <map>
 #include <sstream>
+#include <stdexcept>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -135,35 +136,53 @@ TEST(UsdWriter, StatesUnitsAxisAndFrames) {
   EXPECT_EQ(file.values.at("framesPerSecond"), "10");
 }
 
+using Samples = std::map<int, std::vector<double>>;
+
+/// At the frame, or between two equal samples around it.
+const std::vector<double>& value_at(const Samples& samples, int frame) {
+  const auto next = samples.lower_bound(frame);
+  if (next == samples.end()) throw std::out_of_range("no sample at or after frame " + std::to_string(frame));
+  if (next->first == frame) return next->second;
+  EXPECT_EQ(std::prev(next)->second, next->second) << "at " << frame;
+  return next->second;
+}
+
 TEST(UsdWriter, SamplesMotionAtFrames) {
   Sequence sequence = attributed_sequence();
   for (Frame& frame : sequence.frames)
     for (PiecePose& pose : frame.poses) pose.twist = {Vec3(1, 2, frame.time), Vec3(0, frame.time, 0)};
   const Prim root = written(sequence).children.at("example");
-  std::map<int, int> poses;  // by piece
   for (std::size_t f = 0; f < sequence.frames.size(); ++f)
     for (const auto& [piece, pose, twist] : sequence.frames[f].poses) {
       const Prim& prim = root.children.at(sequence.pieces[static_cast<std::size_t>(piece)].name);
       const int frame = 8 + static_cast<int>(f);
-      ++poses[piece];
-      const std::vector<double>& place = prim.samples.at("double3 xformOp:translate.timeSamples").at(frame);
+      const std::vector<double>& place = value_at(prim.samples.at("double3 xformOp:translate.timeSamples"), frame);
       // Nine digits of numbers below 2.
       for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(place[i], pose.position[static_cast<int>(i)], 1e-8);
-      const std::vector<double>& q = prim.samples.at("quatf xformOp:orient.timeSamples").at(frame);
+      const std::vector<double>& q = value_at(prim.samples.at("quatf xformOp:orient.timeSamples"), frame);
       const Quat turned(q[0], q[1], q[2], q[3]);
       EXPECT_LT(turned.angularDistance(pose.orientation), 1e-6) << "single precision";
-      const auto& velocity = prim.samples.at("vector3f sunder:velocity.timeSamples").at(frame);
-      const auto& spin = prim.samples.at("vector3f sunder:angularVelocity.timeSamples").at(frame);
+      const auto& velocity = value_at(prim.samples.at("vector3f sunder:velocity.timeSamples"), frame);
+      const auto& spin = value_at(prim.samples.at("vector3f sunder:angularVelocity.timeSamples"), frame);
       for (std::size_t i = 0; i < 3; ++i) {
         EXPECT_EQ(static_cast<float>(velocity[i]), static_cast<float>(twist.linear[static_cast<int>(i)]));
         EXPECT_EQ(static_cast<float>(spin[i]), static_cast<float>(twist.angular[static_cast<int>(i)]));
       }
       EXPECT_EQ(prim.values.at("uniform token[] xformOpOrder"), "[\"xformOp:translate\", \"xformOp:orient\"]");
     }
-  for (const auto& [piece, count] : poses) {
-    const Prim& prim = root.children.at(sequence.pieces[static_cast<std::size_t>(piece)].name);
-    EXPECT_EQ(prim.samples.at("double3 xformOp:translate.timeSamples").size(), static_cast<std::size_t>(count));
-  }
+  const Samples& fall = root.children.at("bar_0001").samples.at("double3 xformOp:translate.timeSamples");
+  EXPECT_EQ(fall.begin()->first, 10) << "not before birth";
+  EXPECT_EQ(fall.rbegin()->first, 12);
+}
+
+TEST(UsdWriter, RestsNeedTwoSamples) {
+  Sequence sequence = example_sequence();
+  for (int i = 0; i < 5; ++i) sequence.frames.push_back({0.5 + 0.1 * i, sequence.frames.back().poses});
+  const Prim root = written(sequence).children.at("example");
+  std::vector<int> frames;
+  for (const auto& [frame, value] : root.children.at("bar_0001").samples.at("double3 xformOp:translate.timeSamples"))
+    frames.push_back(frame);
+  EXPECT_EQ(frames, (std::vector<int>{10, 11, 12, 17})) << "it comes to rest at 12";
 }
 
 /// In USD's grammar `custom` stands at an attribute's declaration, never at its samples.
@@ -182,7 +201,7 @@ TEST(UsdWriter, DeclaresCustomAttributesBeforeTheirSamples) {
 
 TEST(UsdWriter, KeepsQuaternionsOnOneHemisphere) {
   const Prim root = written(example_sequence()).children.at("example");
-  const auto& samples = root.children.at("bar_0002").samples.at("quatf xformOp:orient.timeSamples");
+  const Samples& samples = root.children.at("bar_0002").samples.at("quatf xformOp:orient.timeSamples");
   for (auto at = std::next(samples.begin()); at != samples.end(); ++at) {
     double dot = 0;
     for (std::size_t i = 0; i < 4; ++i) dot += at->second[i] * std::prev(at)->second[i];
