@@ -13,8 +13,7 @@ function filled(node, attributes, children) {
 }
 
 /** `on...` attributes are listeners; null, undefined and false leave an attribute out; children are nodes or text. */
-export const element = (tag, attributes = {}, ...children) =>
-  filled(document.createElement(tag), attributes, children);
+export const element = (tag, attributes = {}, ...children) => filled(document.createElement(tag), attributes, children);
 
 export const svg = (tag, attributes = {}, ...children) =>
   filled(document.createElementNS(SVG, tag), attributes, children);

@@ -33,16 +33,62 @@ function withUnit(x, units) {
 }
 
 const UNITS = {
-  time: [[60, "min"], [1, "s"], [1e-3, "ms"], [1e-6, "µs"], [1e-9, "ns"]],
-  length: [[1, "m"], [1e-2, "cm"], [1e-3, "mm"], [1e-6, "µm"]],
-  area: [[1, "m²"], [1e-4, "cm²"], [1e-6, "mm²"]],
-  volume: [[1, "m³"], [1e-3, "dm³"], [1e-6, "cm³"], [1e-9, "mm³"]],
-  mass: [[1e3, "t"], [1, "kg"], [1e-3, "g"], [1e-6, "mg"]],
-  speed: [[1, "m/s"], [1e-3, "mm/s"]],
-  energy: [[1e6, "MJ"], [1e3, "kJ"], [1, "J"], [1e-3, "mJ"], [1e-6, "µJ"]],
-  impulse: [[1, "N s"], [1e-3, "mN s"]],
-  pressure: [[1e9, "GPa"], [1e6, "MPa"], [1e3, "kPa"], [1, "Pa"]],
-  memory: [[1e9, "GB"], [1e6, "MB"], [1e3, "kB"]],
+  time: [
+    [60, "min"],
+    [1, "s"],
+    [1e-3, "ms"],
+    [1e-6, "µs"],
+    [1e-9, "ns"],
+  ],
+  length: [
+    [1, "m"],
+    [1e-2, "cm"],
+    [1e-3, "mm"],
+    [1e-6, "µm"],
+  ],
+  area: [
+    [1, "m²"],
+    [1e-4, "cm²"],
+    [1e-6, "mm²"],
+  ],
+  volume: [
+    [1, "m³"],
+    [1e-3, "dm³"],
+    [1e-6, "cm³"],
+    [1e-9, "mm³"],
+  ],
+  mass: [
+    [1e3, "t"],
+    [1, "kg"],
+    [1e-3, "g"],
+    [1e-6, "mg"],
+  ],
+  speed: [
+    [1, "m/s"],
+    [1e-3, "mm/s"],
+  ],
+  energy: [
+    [1e6, "MJ"],
+    [1e3, "kJ"],
+    [1, "J"],
+    [1e-3, "mJ"],
+    [1e-6, "µJ"],
+  ],
+  impulse: [
+    [1, "N s"],
+    [1e-3, "mN s"],
+  ],
+  pressure: [
+    [1e9, "GPa"],
+    [1e6, "MPa"],
+    [1e3, "kPa"],
+    [1, "Pa"],
+  ],
+  memory: [
+    [1e9, "GB"],
+    [1e6, "MB"],
+    [1e3, "kB"],
+  ],
 };
 
 export const time = (x) => withUnit(x, UNITS.time);

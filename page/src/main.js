@@ -32,7 +32,7 @@ function attempt(place, show) {
 function showCharts(report, player) {
   const append = (make) => attempt("chart-grid", () => byId("chart-grid").append(make(report) ?? ""));
   append(() => {
-    if (report.fragments.count === 0) return null;
+    if (report.fragments.count === 0 || report.frames.count < 2) return null;
     const counts = countChart(report);
     player.addEventListener("frame", () => counts.setTime(player.time));
     return counts;

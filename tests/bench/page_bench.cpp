@@ -48,17 +48,24 @@ void measure(const fs::path& folder, const char* json) {
 
 int main(int argc, char** argv) {
   const char* json = nullptr;
-  fs::path kept;
-  for (int i = 1; i + 1 < argc; i += 2) {
+  const fs::path scratch = fs::temp_directory_path() / ("sunder_page_" + std::to_string(getpid()));
+  fs::path folder = scratch;
+  for (int i = 1; i < argc; i += 2) {
+    const bool known = std::strcmp(argv[i], "--json") == 0 || std::strcmp(argv[i], "--keep") == 0;
+    if (!known || i + 1 == argc) {
+      std::fprintf(stderr, "usage: page_bench [--json FILE] [--keep FOLDER]\n");
+      return 2;
+    }
     if (std::strcmp(argv[i], "--json") == 0) json = argv[i + 1];
-    if (std::strcmp(argv[i], "--keep") == 0) kept = fs::absolute(argv[i + 1]);
+    if (std::strcmp(argv[i], "--keep") == 0) folder = fs::absolute(argv[i + 1]);
   }
-  const fs::path folder = kept.empty() ? fs::temp_directory_path() / ("sunder_page_" + std::to_string(getpid())) : kept;
+  int code = 0;
   try {
     measure(folder, json);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "page_bench: %s\n", error.what());
-    return 1;
+    code = 1;
   }
-  if (kept.empty()) fs::remove_all(folder);
+  fs::remove_all(scratch);
+  return code;
 }

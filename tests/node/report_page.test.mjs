@@ -2,6 +2,7 @@
 // (tests/pipeline/burst.h); screenshots go there, too.
 import assert from "node:assert/strict";
 import { createHash } from "node:crypto";
+import { readFile, writeFile } from "node:fs/promises";
 import { after, afterEach, before, test } from "node:test";
 import { launch, openPage } from "./browser.mjs";
 
@@ -19,7 +20,9 @@ const state = (page, key) => page.$eval("#viewer", (viewer, name) => viewer.data
 // Names what the viewer shows once it is drawn as well as it can be, without what lies over it.
 async function picture(page) {
   await page.waitForSelector("#canvas[data-still]");
-  return createHash("sha256").update(await page.evaluate(() => window.picture)).digest("hex");
+  return createHash("sha256")
+    .update(await page.evaluate(() => window.picture))
+    .digest("hex");
 }
 
 async function scrub(page, frame) {
@@ -67,7 +70,13 @@ test("colours, the exploded view and hidden outsides change the picture and are 
   await scrub(page, 8);
   await page.focus("#canvas");
   const seen = new Map();
-  for (const [key, mode] of [["0", "material"], ["1", "fragment"], ["2", "generation"], ["3", "damage"], ["4", "speed"]]) {
+  for (const [key, mode] of [
+    ["0", "material"],
+    ["1", "fragment"],
+    ["2", "generation"],
+    ["3", "damage"],
+    ["4", "speed"],
+  ]) {
     await page.keyboard.press(key);
     assert.equal(await state(page, "mode"), mode);
     seen.set(mode, await picture(page));
@@ -105,7 +114,11 @@ test("selection goes from the table to the view and from the view to the table",
 test("plays by itself unless motion is unwanted", async () => {
   const moving = await openPage(browser, file, { motion: "no-preference" });
   const first = Number(await state(moving.page, "frame"));
-  await moving.page.waitForFunction((frame) => Number(document.getElementById("viewer").dataset.frame) > frame, {}, first);
+  await moving.page.waitForFunction(
+    (frame) => Number(document.getElementById("viewer").dataset.frame) > frame,
+    {},
+    first,
+  );
   const still = await openPage(browser, file);
   const label = await still.page.$eval("#play", (button) => button.getAttribute("aria-label"));
   assert.equal(label, "Play");
@@ -136,12 +149,18 @@ test("everything that can be used or read has a name, and one tab stop leads thr
   const { page } = await openPage(browser, file);
   const nodes = named(await page.accessibility.snapshot({ interestingOnly: false }));
   assert.ok(nodes.length > 50);
-  assert.deepEqual(nodes.filter((node) => !node.name && node.role !== "group"), []);
-  const stops = await page.$$eval("#chart-grid .plot", (plots) => plots.map((p) => p.querySelectorAll("[tabindex='0']").length));
+  assert.deepEqual(
+    nodes.filter((node) => !node.name && node.role !== "group"),
+    [],
+  );
+  const stops = await page.$$eval("#chart-grid .plot", (plots) =>
+    plots.map((p) => p.querySelectorAll("[tabindex='0']").length),
+  );
   assert.ok(stops.length >= 4);
   assert.deepEqual(new Set(stops), new Set([1]));
   await page.$eval("#chart-grid .plot [tabindex='0']", (mark) => mark.focus());
-  const tip = () => page.$eval("#chart-grid .plot:has(:focus) .tooltip", (tooltip) => (tooltip.hidden ? "" : tooltip.textContent));
+  const tip = () =>
+    page.$eval("#chart-grid .plot:has(:focus) .tooltip", (tooltip) => (tooltip.hidden ? "" : tooltip.textContent));
   assert.match(await tip(), /27 new of ball/);
   await page.$eval("#chart-grid figure:nth-child(2) .plot [tabindex='0']", (mark) => mark.focus());
   const first = await tip();
@@ -155,6 +174,109 @@ test("without WebGL the rest of the page stays", async () => {
   assert.match(await page.$eval("#stage-message", (message) => message.textContent), /no WebGL 2.*fragments\.glb/s);
   assert.equal(await page.$eval("#play", (button) => button.disabled), true);
   assert.ok((await page.$$("#chart-grid figure")).length >= 4);
-  assert.equal((await page.$$("#fragment-table tbody tr")).length, 25);
+  assert.equal((await page.$$("#fragment-table tbody tr")).length, 15);
   await blind.close();
+});
+
+// The page with another report or geometry; its address.
+async function variant(name, { report = (r) => r, geometry }) {
+  let html = await readFile(`${folder}/index.html`, "utf8");
+  html = html.replace(/(id="report">)(.*?)(<\/script>)/s, (_, head, json, tail) =>
+    [head, JSON.stringify(report(JSON.parse(json))), tail].join(""),
+  );
+  if (geometry !== undefined)
+    html = html.replace(/(id="geometry") data-bytes="\d+">[^<]*/, `$1 data-bytes="${geometry}">`);
+  await writeFile(`${folder}/${name}.html`, html);
+  return `file://${folder}/${name}.html`;
+}
+
+test("geometry that is too large or missing is named, and the rest stays", async () => {
+  for (const [size, words] of [
+    [312e6, /312 MB.*Blender/s],
+    [0, /no fragments\.glb/],
+  ]) {
+    const { page, complaints } = await openPage(browser, await variant(`bytes_${size}`, { geometry: size }));
+    assert.match(await page.$eval("#stage-message", (message) => message.textContent), words);
+    assert.equal((await page.$$("#fragment-table tbody tr")).length, 15);
+    assert.deepEqual(complaints, []);
+  }
+});
+
+const parameter = (name, value) => ({ name, value, low: 0.9 * value, high: 1.1 * value });
+
+const STATISTICS = {
+  fragments: 27,
+  largest_share: 0.2,
+  volume: { minimum: 1e-6, median: 2e-6, mean: 3e-6, maximum: 1e-5 },
+  closure: [{ body: "ball", original: 1e-4, fragments: 1e-4, relative_error: 1e-15 }],
+  counts: [
+    { time: 0.1, body: "ball", new: 20, alive: 20 },
+    { time: 0.5, body: "ball", new: 8, alive: 27 },
+  ],
+  fits: [
+    {
+      law: "mott_2d",
+      of: "volume",
+      count: 27,
+      parameters: [parameter("mu", 2e-5)],
+      ks: 0.1,
+      p_value: 0.4,
+      log_likelihood: 300,
+      aic: -598,
+      above: null,
+    },
+    {
+      law: "weibull",
+      of: "volume",
+      count: 27,
+      parameters: [parameter("scale", 4e-5), parameter("shape", 0.8)],
+      ks: 0.1,
+      p_value: 0.5,
+      log_likelihood: 305,
+      aic: -606,
+      above: null,
+    },
+    {
+      law: "power_law",
+      of: "volume",
+      count: 20,
+      parameters: [parameter("exponent", 2), parameter("above", 1.5e-5)],
+      ks: 0.1,
+      p_value: 0.3,
+      log_likelihood: 200,
+      aic: null,
+      above: 1.5e-5,
+    },
+  ],
+  fits_note: "A note on the fits.",
+  per_fracture: [{ time: 1 / 12, body: "ball", new: 27, median_volume: 2e-6, largest_share: 0.2 }],
+  energy: { kinetic_start: 9, kinetic_end: 2, fracture: 0.3, lost_in_fractures: 5 },
+};
+
+test("statistics are drawn where there are any, and missed where there are none", async () => {
+  const without = await variant("plain", { report: ({ statistics, ...rest }) => rest });
+  const plain = await openPage(browser, without);
+  const text = (page) => page.$eval("#chart-grid", (grid) => grid.textContent);
+  assert.match(await text(plain.page), /holds no statistics: no laws are fitted/);
+  assert.equal((await plain.page.$$("#chart-grid path.law")).length, 0);
+  assert.deepEqual(plain.complaints, []);
+
+  const full = await variant("fitted", { report: (report) => ({ ...report, statistics: STATISTICS }) });
+  const { page, complaints } = await openPage(browser, full);
+  assert.match(await text(page), /Weibull has the lowest AIC\. A note on the fits\./);
+  assert.equal((await page.$$("#chart-grid path.law")).length, 3);
+  await page.click(".chart-legend input");
+  assert.equal((await page.$$("#chart-grid path.law")).length, 2);
+  await page.click("#chart-grid .chart-legend ~ details summary");
+  assert.equal((await page.$$("#chart-grid .chart-legend ~ details tbody tr")).length, 3);
+  assert.match(await page.$eval("#run-facts", (facts) => facts.textContent), /Motion lost in fractures5 J/);
+  assert.deepEqual(complaints, []);
+});
+
+test("a report of another version loses the parts that it lacks only", async () => {
+  const address = await variant("other", { report: ({ effects, motion, ...rest }) => rest });
+  const { page } = await openPage(browser, address);
+  assert.match(await page.$eval("#chart-grid", (grid) => grid.textContent), /This part cannot be shown/);
+  assert.ok((await page.$$("#chart-grid figure")).length >= 3);
+  assert.equal(await state(page, "mode"), "fragment");
 });

@@ -1,8 +1,8 @@
 // The frame of a chart with two axes.
 import { svg } from "../dom.js";
 
-const LEFT = 52;
-const RIGHT = 14;
+const LEFT = 68;
+const RIGHT = 18;
 const TOP = 12;
 const BOTTOM = 42;
 
@@ -37,7 +37,11 @@ export function axes(width, height, x, y) {
     vertical,
     horizontal,
     svg("line", { class: "axis", x1: box.left, x2: box.right, y1: box.bottom, y2: box.bottom }),
-    svg("text", { class: "axis-title", x: (box.left + box.right) / 2, y: height - 6, "text-anchor": "middle" }, x.title),
+    svg(
+      "text",
+      { class: "axis-title", x: (box.left + box.right) / 2, y: height - 6, "text-anchor": "middle" },
+      x.title,
+    ),
     svg(
       "text",
       { class: "axis-title", x: 12, y: middle, "text-anchor": "middle", transform: `rotate(-90 12 ${middle})` },

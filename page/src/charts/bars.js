@@ -31,5 +31,12 @@ export function bars(width, items) {
     );
     return { node, text: item.says ?? `${item.name}: ${item.text}` };
   });
-  return { node: canvas(width, items.length * ROW + 4, marks.map((mark) => mark.node)), marks };
+  return {
+    node: canvas(
+      width,
+      items.length * ROW + 4,
+      marks.map((mark) => mark.node),
+    ),
+    marks,
+  };
 }

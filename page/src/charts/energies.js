@@ -1,5 +1,5 @@
 // Where the work of all contacts went.
-import { energy, percent, time } from "../format.js";
+import { counted, energy, percent, time } from "../format.js";
 import { bars } from "./bars.js";
 import { figure } from "./figure.js";
 
@@ -28,11 +28,15 @@ export function energyChart(report) {
   }));
   return figure({
     title: "Work of the contacts",
-    summary: `${energy(work)} in ${solves.length} solves, and where it was at the end of each. What the grid cannot resolve is lost in the transfers between particles and grid.`,
+    summary: `${energy(work)} in ${counted(solves.length, "solve")}, and where it was at the end of each. What the grid cannot resolve is lost in the transfers between particles and grid.`,
     draw: (width) => bars(width, items),
     table: () => ({
       head: ["Solve", "Work", ...PARTS.map(([, name]) => name)],
-      rows: solves.map((f) => [`${f.body}, ${time(f.time)}`, energy(f.parts.work), ...PARTS.map(([key]) => energy(f.parts[key]))]),
+      rows: solves.map((f) => [
+        `${f.body}, ${time(f.time)}`,
+        energy(f.parts.work),
+        ...PARTS.map(([key]) => energy(f.parts[key])),
+      ]),
     }),
   });
 }

@@ -56,12 +56,25 @@ export function plainTable(caption, { head, rows }) {
       "table",
       {},
       element("caption", { class: "hidden-title" }, caption),
-      element("thead", {}, element("tr", {}, head.map((text) => element("th", { scope: "col" }, text)))),
+      element(
+        "thead",
+        {},
+        element(
+          "tr",
+          {},
+          head.map((text) => element("th", { scope: "col" }, text)),
+        ),
+      ),
       element(
         "tbody",
         {},
         rows.map(([first, ...rest]) =>
-          element("tr", {}, element("th", { scope: "row" }, first), rest.map((text) => element("td", {}, text))),
+          element(
+            "tr",
+            {},
+            element("th", { scope: "row" }, first),
+            rest.map((text) => element("td", {}, text)),
+          ),
         ),
       ),
     ),
@@ -81,11 +94,11 @@ export function foldedTable(title, table, label = "Numbers as a table") {
  * `draw(width)` gives { node, marks: [{ node, text }] }; `table()` { head, rows }; `summary`: the chart in a sentence;
  * `after`: nodes below the drawing. The figure's `redraw` draws it anew.
  */
-export function figure({ title, summary, draw, table, after = [], wide = false }) {
+export function figure({ title, summary, draw, table, after = [] }) {
   const plot = element("div", { class: "plot" });
   const figureNode = element(
     "figure",
-    { class: wide ? "card chart wide" : "card chart" },
+    { class: "card chart" },
     element("figcaption", {}, element("h3", {}, title), element("p", { class: "quiet" }, summary)),
     plot,
     after,

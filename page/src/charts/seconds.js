@@ -1,6 +1,6 @@
 // Where the time of the run went: its stages, and its effects.
 import { element } from "../dom.js";
-import { count, percent, time, words } from "../format.js";
+import { count, counted, percent, time, words } from "../format.js";
 import { bars } from "./bars.js";
 import { figure } from "./figure.js";
 
@@ -27,7 +27,7 @@ export function stageChart(report) {
   }));
   return figure({
     title: "Seconds per stage",
-    summary: `${time(total)} in all, ${count(report.threads)} threads. Solves of several bodies may run side by side.`,
+    summary: `${time(total)} in all${report.threads > 0 ? `, ${counted(report.threads, "thread")}` : ""}. Solves of several bodies may run side by side.`,
     draw: (width) => bars(width, items),
     table: () => ({
       head: ["Stage", "Seconds", "Share of the run"],
@@ -56,16 +56,30 @@ export function effectChart(report) {
     "ul",
     { class: "skipped" },
     skipped.map((effect) =>
-      element("li", {}, element("span", { class: "tag" }, "skipped"), ` ${words(effect.name)} `, element("span", { class: "quiet" }, `– ${effect.why}`)),
+      element(
+        "li",
+        {},
+        element("span", { class: "tag" }, "skipped"),
+        ` ${words(effect.name)} `,
+        element("span", { class: "quiet" }, `– ${effect.why}`),
+      ),
     ),
   );
   return figure({
     title: "Effects",
     summary: `${ran.length} ran, ${skipped.length} were skipped. Those that ran may share their time.`,
-    draw: (width) => (items.length > 0 ? bars(width, items) : bars(width, [{ name: "none ran", value: 0, text: "0 s" }])),
+    draw: (width) =>
+      items.length > 0 ? bars(width, items) : bars(width, [{ name: "none ran", value: 0, text: "0 s" }]),
     table: () => ({
       head: ["Effect", "Asked", "Ran", "Why", "Work", "Seconds"],
-      rows: report.effects.map((e) => [words(e.name), e.asked, e.ran ? "yes" : "no", e.why, workOf(e), time(e.seconds)]),
+      rows: report.effects.map((e) => [
+        words(e.name),
+        e.asked,
+        e.ran ? "yes" : "no",
+        e.why,
+        workOf(e),
+        time(e.seconds),
+      ]),
     }),
     after: skipped.length > 0 ? [list] : [],
   });

@@ -9,16 +9,29 @@ import { logTicks, logarithmic } from "./scales.js";
 
 const HEIGHT = 340;
 const CURVE_POINTS = 160;
-/** Fragments that get a mark of their own; of more, evenly many of them. */
+/** Fragments that get a mark of their own, at most. */
 const MARKS = 48;
 const MOST_DOTS = 400;
 
 // The share of fragments at least as large as the i-th smallest.
 const share = (i, n) => (n - i) / n;
 
-function markedIndices(n) {
-  const marks = Math.min(n, MARKS);
-  return [...new Set(Array.from({ length: marks }, (_, k) => Math.round((k * (n - 1)) / Math.max(1, marks - 1))))];
+// Evenly along the axis of volumes, always with the smallest and the largest.
+function markedIndices(volumes) {
+  const n = volumes.length;
+  if (n <= MARKS) return volumes.map((_, i) => i);
+  const spread = volumes[n - 1] / volumes[0];
+  const chosen = new Set();
+  for (let k = 0; k < MARKS; ++k) {
+    const target = volumes[0] * spread ** (k / (MARKS - 1));
+    chosen.add(
+      Math.max(
+        0,
+        volumes.findIndex((v) => v >= target * (1 - 1e-9)),
+      ),
+    );
+  }
+  return [...chosen.add(n - 1)].sort((a, b) => a - b);
 }
 
 function curve(fit, volumes, x, y) {
@@ -50,7 +63,7 @@ function scales(width, volumes) {
 function drawVolumes(width, volumes, fits, shown) {
   const n = volumes.length;
   const { x, y } = scales(width, volumes);
-  const marks = markedIndices(n).map((i) => ({
+  const marks = markedIndices(volumes).map((i) => ({
     text: `${counted(n - i, "fragment")} of ${count(n)} (${percent(share(i, n))}) with at least ${volume(volumes[i])}`,
     node: svg(
       "g",
@@ -59,7 +72,10 @@ function drawVolumes(width, volumes, fits, shown) {
       svg("circle", { class: "dot mark-point", cx: x(volumes[i]), cy: y(share(i, n)), r: 3.2 }),
     ),
   }));
-  const steps = volumes.flatMap((v, i) => [[x(v), y(share(i, n))], [x(v), y(share(i + 1, n) || y.domain[0])]]);
+  const steps = volumes.flatMap((v, i) => [
+    [x(v), y(share(i, n))],
+    [x(v), y(share(i + 1, n) || y.domain[0])],
+  ]);
   const curves = fits.map((fit, k) => {
     const d = shown.has(fit.law) && curve(fit, volumes, x, y);
     return d ? svg("path", { class: `line law series-${k + 1}`, d }) : null;
@@ -75,7 +91,9 @@ function drawVolumes(width, volumes, fits, shown) {
     ),
     n <= MOST_DOTS ? null : svg("path", { class: "line series-0", d: path(steps) }),
     curves,
-    n <= MOST_DOTS ? volumes.map((v, i) => svg("circle", { class: "dot small", cx: x(v), cy: y(share(i, n)), r: 2.2 })) : null,
+    n <= MOST_DOTS
+      ? volumes.map((v, i) => svg("circle", { class: "dot small", cx: x(v), cy: y(share(i, n)), r: 2.2 }))
+      : null,
     marks.map((mark) => mark.node),
   );
   return { node, marks };
@@ -92,7 +110,14 @@ function legend(fits, best, shown, redraw) {
     return element(
       "li",
       {},
-      element("label", {}, box, element("span", { class: `stroke series-${k + 1}` }), lawName(fit.law), fit === best ? " (best)" : ""),
+      element(
+        "label",
+        {},
+        box,
+        element("span", { class: `stroke series-${k + 1}` }),
+        lawName(fit.law),
+        fit === best ? " (best)" : "",
+      ),
     );
   });
   return element("ul", { class: "chart-legend", "aria-label": "Fitted laws to show" }, items);
@@ -134,7 +159,10 @@ export function volumeChart(report) {
   const best = bestFit(fits);
   const shown = new Set(fits.map((fit) => fit.law));
   let redraw = () => {};
-  const below = fits.length === 0 ? [] : [legend(fits, best, shown, () => redraw()), foldedTable("Fitted laws", () => fitRows(fits), "Fitted laws")];
+  const below =
+    fits.length === 0
+      ? []
+      : [legend(fits, best, shown, () => redraw()), foldedTable("Fitted laws", () => fitRows(fits), "Fitted laws")];
   const chart = figure({
     title: "Volumes of the fragments",
     summary: sentence(volumes, statistics, fits),

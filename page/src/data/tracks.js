@@ -59,7 +59,8 @@ function sample(channel, width, moment, out, at) {
   if (channel.step || share === 0) {
     for (let k = 0; k < width; ++k) out[at + k] = values[from + k];
   } else {
-    for (let k = 0; k < width; ++k) out[at + k] = values[from + k] + share * (values[from + width + k] - values[from + k]);
+    for (let k = 0; k < width; ++k)
+      out[at + k] = values[from + k] + share * (values[from + width + k] - values[from + k]);
   }
 }
 

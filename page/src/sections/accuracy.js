@@ -3,9 +3,11 @@ import { element } from "../dom.js";
 import { count, length, number, percent, pressure } from "../format.js";
 
 const LEVELS = {
-  draft: "Draft shows whether and roughly where things break. Numbers and sizes of fragments change with the resolution.",
+  draft:
+    "Draft shows whether and roughly where things break. Numbers and sizes of fragments change with the resolution.",
   preview: "Preview settles where the main cracks run. Small fragments still change with the resolution.",
-  final: "Final resolves the most that the program offers by itself, and lets the sides of cracks part during the solve.",
+  final:
+    "Final resolves the most that the program offers by itself, and lets the sides of cracks part during the solve.",
 };
 
 const worst = (list, key) => Math.max(...list.map(key));
@@ -30,13 +32,18 @@ function energySentence(fractures) {
 
 export function accuracyStatement(report) {
   const { fractures, fragments } = report;
-  const lines = [`${count(fragments.closed)} of ${count(fragments.count)} fragments are closed; cuts keep the volume to ${number(fragments.volume_error, 2)}.`];
+  const lines = [
+    `${count(fragments.closed)} of ${count(fragments.count)} fragments are closed; cuts keep the volume to ${number(fragments.volume_error, 2)}.`,
+  ];
   if (fractures.length > 0) {
     lines.push(
       `A solve has up to ${count(worst(fractures, (f) => f.particles))} particles.`,
       bandSentence(fractures),
       energySentence(fractures),
-      `Fragments take over momentum to ${number(worst(fractures, (f) => f.momentum_error), 2)} of what there was.`,
+      `Fragments take over momentum to ${number(
+        worst(fractures, (f) => f.momentum_error),
+        2,
+      )} of what there was.`,
     );
   }
   return element(
@@ -44,6 +51,10 @@ export function accuracyStatement(report) {
     { class: "card" },
     element("h3", {}, "Accuracy"),
     LEVELS[report.quality] ? element("p", {}, LEVELS[report.quality]) : null,
-    element("ul", {}, lines.filter(Boolean).map((line) => element("li", {}, line))),
+    element(
+      "ul",
+      {},
+      lines.filter(Boolean).map((line) => element("li", {}, line)),
+    ),
   );
 }

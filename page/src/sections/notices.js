@@ -7,7 +7,12 @@ import { words } from "../format.js";
 const meanings = FALLBACKS;
 
 const notice = (kind, tag, ...text) =>
-  element("li", { class: `notice ${kind}` }, element("span", { class: `tag ${kind}` }, tag), element("div", {}, ...text));
+  element(
+    "li",
+    { class: `notice ${kind}` },
+    element("span", { class: `tag ${kind}` }, tag),
+    element("div", {}, ...text),
+  );
 
 function notices(report) {
   const list = [];

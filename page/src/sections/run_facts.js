@@ -11,12 +11,14 @@ const facts = (title, pairs) =>
     element(
       "dl",
       { class: "facts" },
-      pairs.map(([name, value]) => element("div", {}, element("dt", {}, name), element("dd", {}, value))),
+      pairs
+        .filter(([, value]) => value)
+        .map(([name, value]) => element("div", {}, element("dt", {}, name), element("dd", {}, value))),
     ),
   );
 
 function motion({ motion: m }) {
-  if (!m) return null;
+  if (!m?.steps) return null;
   const { name, speed: fastest, time: when } = m.fastest_fragment;
   return facts("Motion", [
     ["Rigid steps", count(m.steps)],
@@ -37,7 +39,7 @@ function volumes({ statistics }) {
     { class: "card" },
     element("h3", {}, "Volume"),
     plainTable("Volume of bodies and of their fragments", {
-      head: ["Body", "Before", "Fragments", "Relative error"],
+      head: ["Body", "Before", "Fragments", "Error"],
       rows: closure.map((c) => [c.body, volume(c.original), volume(c.fragments), number(c.relative_error, 2)]),
     }),
     sizes
@@ -80,7 +82,7 @@ const identity = (report) =>
     ["Seed", String(report.seed)],
     ["Program", `Sunder ${report.version} (${report.git})`],
     ["Fingerprint", report.fingerprint],
-    ["Particle-steps a second", number(report.mpm.particle_steps_per_second)],
+    ["Particle-steps a second", report.mpm.particle_steps > 0 && number(report.mpm.particle_steps_per_second)],
   ]);
 
 export const runFacts = (report) =>

@@ -8,12 +8,20 @@ function lineOf(text) {
 
 export function showScene(text) {
   if (!text) {
-    byId("scene-echo").append(element("p", { class: "quiet" }, "There is no scene.toml beside report.json: the results were not made from a scene file, or it was removed."));
+    byId("scene-echo").append(
+      element(
+        "p",
+        { class: "quiet" },
+        "There is no scene.toml beside report.json: the results were not made from a scene file, or it was removed.",
+      ),
+    );
     return;
   }
   const lines = text.replace(/\n$/, "").split("\n");
-  const code = element("code", {}, lines.flatMap((line) => [...lineOf(line), "\n"]));
-  byId("scene-echo").append(
-    element("pre", { class: "card scene", tabindex: "0", "aria-label": "Scene file" }, code),
+  const code = element(
+    "code",
+    {},
+    lines.flatMap((line) => [...lineOf(line), "\n"]),
   );
+  byId("scene-echo").append(element("pre", { class: "card scene", tabindex: "0", "aria-label": "Scene file" }, code));
 }

@@ -6,13 +6,23 @@ const solveSeconds = ({ seconds }) => seconds.sample + seconds.solve + seconds.e
 const columns = [
   { name: "Body", value: (f) => f.body, text: (f) => f.body },
   { name: "Time", value: (f) => f.time, text: (f) => time(f.time), numeric: true },
-  { name: "Fragments", value: (f) => f.fragments, text: (f) => (f.fragments > 0 ? count(f.fragments) : "stays whole"), numeric: true },
+  {
+    name: "Fragments",
+    value: (f) => f.fragments,
+    text: (f) => (f.fragments > 0 ? count(f.fragments) : "stays whole"),
+    numeric: true,
+  },
   { name: "Approach", value: (f) => f.approach_speed, text: (f) => speed(f.approach_speed), numeric: true },
   { name: "Impulse", value: (f) => f.delivered_impulse, text: (f) => impulse(f.delivered_impulse), numeric: true },
   { name: "Damaged", value: (f) => f.damaged_share, text: (f) => percent(f.damaged_share), numeric: true },
   { name: "Particles", value: (f) => f.particles, text: (f) => count(f.particles), numeric: true },
   { name: "Steps", value: (f) => f.steps, text: (f) => count(f.steps), numeric: true },
-  { name: "Front strength", value: (f) => f.propagation_strength, text: (f) => pressure(f.propagation_strength), numeric: true },
+  {
+    name: "Front strength",
+    value: (f) => f.propagation_strength,
+    text: (f) => pressure(f.propagation_strength),
+    numeric: true,
+  },
   { name: "Ended by", value: (f) => f.stopped_by, text: (f) => f.stopped_by },
   { name: "Took", value: solveSeconds, text: (f) => time(solveSeconds(f)), numeric: true },
 ];
@@ -23,8 +33,18 @@ const energyColumns = [
 ];
 
 const sizeColumns = [
-  { name: "Median volume", value: (f) => f.median_volume ?? 0, text: (f) => (f.median_volume ? volume(f.median_volume) : "–"), numeric: true },
-  { name: "Largest share", value: (f) => f.largest_share ?? 0, text: (f) => (f.largest_share ? percent(f.largest_share) : "–"), numeric: true },
+  {
+    name: "Median volume",
+    value: (f) => f.median_volume ?? 0,
+    text: (f) => (f.median_volume ? volume(f.median_volume) : "–"),
+    numeric: true,
+  },
+  {
+    name: "Largest share",
+    value: (f) => f.largest_share ?? 0,
+    text: (f) => (f.largest_share ? percent(f.largest_share) : "–"),
+    numeric: true,
+  },
 ];
 
 // The report keeps what belongs to one fracture in several lists, which name it by its time and body.

@@ -2,7 +2,7 @@
 import { element } from "../dom.js";
 import { count } from "../format.js";
 
-const PAGE = 25;
+const PAGE = 15;
 
 const compare = (a, b) => (typeof a === "string" ? a.localeCompare(b, "en", { numeric: true }) : a - b);
 
@@ -26,7 +26,7 @@ export class SortableTable {
       { class: "card" },
       element(
         "div",
-        { class: "table-scroll", tabindex: "0", role: "region", "aria-label": caption },
+        { class: "table-scroll whole", tabindex: "0", role: "region", "aria-label": caption },
         element(
           "table",
           { class: "rows" },
@@ -103,7 +103,9 @@ export class SortableTable {
   show() {
     const begin = this.page * PAGE;
     const shown = this.rows.slice(begin, begin + PAGE);
-    const focused = this.body.contains(document.activeElement) ? document.activeElement.getAttribute("aria-label") : null;
+    const focused = this.body.contains(document.activeElement)
+      ? document.activeElement.getAttribute("aria-label")
+      : null;
     this.body.replaceChildren(...shown.map((row) => this.row(row)));
     if (focused) this.body.querySelector(`[aria-label="${CSS.escape(focused)}"]`)?.focus();
     this.pager.hidden = this.rows.length <= PAGE;

@@ -54,9 +54,7 @@ const GOLDEN_ANGLE = 137.508;
 const LIGHTNESS = [0.72, 0.62, 0.8];
 
 const fragmentTone = (piece) =>
-  piece.parent < 0
-    ? WHOLE
-    : { lightness: LIGHTNESS[piece.id % 3], chroma: 0.115, hue: (piece.id * GOLDEN_ANGLE) % 360 };
+  piece.parent < 0 ? WHOLE : { lightness: LIGHTNESS[piece.id % 3], chroma: 0.1, hue: (piece.id * GOLDEN_ANGLE) % 360 };
 
 const GENERATIONS = [
   WHOLE,

@@ -33,6 +33,8 @@ function bindTransport(player) {
   byId("back").addEventListener("click", () => player.step(-1));
   byId("forward").addEventListener("click", () => player.step(1));
   byId("speed").addEventListener("change", (event) => player.setSpeed(Number(event.target.value)));
+  for (const control of document.querySelectorAll(".transport :is(button, input, select)"))
+    control.disabled = player.count < 2;
   showFrame();
   showState();
 }
@@ -40,9 +42,7 @@ function bindTransport(player) {
 /** Frames of the fractures that made fragments, ascending, each once; `frameAfter`: the first that shows one. */
 function bindFractures(player, fractures) {
   const frames = [
-    ...new Set(
-      fractures.filter((f) => f.fragments > 0).map((f) => Math.min(player.last, frameAfter(player, f.time))),
-    ),
+    ...new Set(fractures.filter((f) => f.fragments > 0).map((f) => Math.min(player.last, frameAfter(player, f.time)))),
   ].sort((a, b) => a - b);
   const marks = frames.map((frame) =>
     element("span", { style: `left:${((100 * frame) / Math.max(1, player.last)).toFixed(2)}%` }),
@@ -67,7 +67,12 @@ function bindModes(view) {
   const radios = view.modes.map((mode) => {
     const input = element("input", { type: "radio", name: "mode", value: mode.id, disabled: Boolean(mode.missing) });
     input.addEventListener("change", () => view.setMode(mode.id));
-    return element("label", { title: mode.missing }, input, element("span", {}, mode.name, element("kbd", {}, mode.key)));
+    return element(
+      "label",
+      { title: mode.missing },
+      input,
+      element("span", {}, mode.name, element("kbd", {}, mode.key)),
+    );
   });
   byId("modes").append(...radios);
   const show = () => {
@@ -98,7 +103,9 @@ function bindSelectionCard(view, selection) {
     const piece = view.selected();
     byId("viewer").dataset.selected = piece?.name ?? "";
     if (!piece)
-      return card.replaceChildren(element("p", { class: "quiet" }, "Click a piece, or choose one in the table of fragments."));
+      return card.replaceChildren(
+        element("p", { class: "quiet" }, "Click a piece, or choose one in the table of fragments."),
+      );
     const parent = view.pieces[view.indexOf.get(piece.parent)];
     card.replaceChildren(
       element("p", { class: "selected-name" }, piece.name),

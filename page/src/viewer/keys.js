@@ -12,10 +12,11 @@ const announced = (player, act) => () => {
 
 function bindings(view, player, { toNext, toPrevious }) {
   const step = (frames) => announced(player, () => player.step(frames));
-  const to = (frame) => announced(player, () => {
-    player.pause();
-    player.seek(frame);
-  });
+  const to = (frame) =>
+    announced(player, () => {
+      player.pause();
+      player.seek(frame);
+    });
   const mode = (id) => () => {
     const wanted = view.modes.find((m) => m.id === id);
     if (!wanted.missing) view.setMode(id);
@@ -47,7 +48,8 @@ function bindings(view, player, { toNext, toPrevious }) {
 // Whether the key belongs to what has the focus: text and sliders, the space bar of buttons, scrolling boxes.
 function isTaken(target, key) {
   if (target.matches("select, textarea, input:not([type=checkbox], [type=radio], [type=range])")) return true;
-  if (target.matches("input[type=range], input[type=radio]")) return key.startsWith("Arrow") || key === "Home" || key === "End";
+  if (target.matches("input[type=range], input[type=radio]"))
+    return key.startsWith("Arrow") || key === "Home" || key === "End";
   if (target.closest("[data-keys]")) return key.startsWith("Arrow") || key === "Home" || key === "End" || key === " ";
   return key === " " && target.matches("button, summary, a, input");
 }

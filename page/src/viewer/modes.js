@@ -1,14 +1,7 @@
 // What colours mean: for each way of colouring what the stage shows and what the legend says.
 import { element } from "../dom.js";
 import { counted, speed as speedText, time as timeText } from "../format.js";
-import {
-  fragmentColour,
-  generationColour,
-  generationCss,
-  lastGeneration,
-  rampCss,
-  rampLinear,
-} from "./colours.js";
+import { fragmentColour, generationColour, generationCss, lastGeneration, rampCss, rampLinear } from "./colours.js";
 
 const swatch = (colour, text) =>
   element("li", {}, element("span", { class: "swatch", style: `background:${colour}` }), text);
@@ -18,12 +11,15 @@ function ramp(name, low, middle, high) {
     "div",
     { class: "ramp" },
     element("div", { class: "ramp-bar", style: `background:${rampCss(name)}` }),
-    element("div", { class: "ramp-ends" }, [low, middle, high].map((text) => element("span", {}, text))),
+    element(
+      "div",
+      { class: "ramp-ends" },
+      [low, middle, high].map((text) => element("span", {}, text)),
+    ),
   );
 }
 
-const damageRamp = ({ low, high }) =>
-  ramp("damage", timeText(low), timeText((low + high) / 2), timeText(high));
+const damageRamp = ({ low, high }) => ramp("damage", timeText(low), timeText((low + high) / 2), timeText(high));
 
 const srgb = (x) => Math.round(255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055));
 const cssOf = ([r, g, b]) => `rgb(${srgb(r)} ${srgb(g)} ${srgb(b)})`;
@@ -62,7 +58,7 @@ export function colourModes({ materials, pieces, range, fastest }) {
       name: "Fragment",
       stage: "piece",
       colours: () => pieces.map(fragmentColour),
-      legend: () => element("p", {}, `A colour for each of ${counted(fragments, "fragment")}; crack faces darker`),
+      legend: () => element("p", {}, `${counted(fragments, "fragment")}, crack faces darker`),
     },
     {
       id: "generation",

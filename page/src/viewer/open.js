@@ -54,7 +54,9 @@ function begin(view, player, fractures) {
   view.frameSelection();
   for (const query of ["(prefers-color-scheme: dark)", "(prefers-contrast: more)"])
     matchMedia(query).addEventListener("change", () => stage.applyTheme());
-  byId("canvas").addEventListener("webglcontextlost", () => say("The browser took the graphics away; reload the page."));
+  byId("canvas").addEventListener("webglcontextlost", () =>
+    say("The browser took the graphics away; reload the page."),
+  );
   const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
   if (calm) player.seek(firstFrame(player, fractures));
   stage.addEventListener(

@@ -1,13 +1,5 @@
 // The picture: renderer, camera, and when it is drawn how finely.
-import {
-  Color,
-  DoubleSide,
-  FrontSide,
-  PerspectiveCamera,
-  Scene,
-  WebGLRenderTarget,
-  WebGLRenderer,
-} from "three";
+import { Color, DoubleSide, FrontSide, PerspectiveCamera, Scene, WebGLRenderTarget, WebGLRenderer } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { POSE } from "../data/pieces.js";
 import { drawsInSoftware } from "./graphics.js";

@@ -3,7 +3,7 @@ import { damageRange, usualTopSpeed } from "../data/ranges.js";
 import { mergePieces } from "../data/merge.js";
 import { POSE, posesAt, readPieces, speedsAt } from "../data/pieces.js";
 import { explode } from "./explode.js";
-import { firstView, gridSpacing, radiiOf } from "./framing.js";
+import { firstView, gridSpacing, placeOf, spheresOf } from "./framing.js";
 import { colourModes, speedColours } from "./modes.js";
 import { Stage } from "./stage.js";
 
@@ -19,7 +19,7 @@ export class View extends EventTarget {
     super();
     this.pieces = readPieces(glb);
     this.indexOf = new Map(this.pieces.map((piece) => [piece.id, piece.index]));
-    this.radii = radiiOf(glb, this.pieces);
+    this.spheres = spheresOf(glb, this.pieces);
     this.player = player;
     this.selection = selection;
     this.poses = new Float32Array(POSE * this.pieces.length);
@@ -38,7 +38,7 @@ export class View extends EventTarget {
     });
     this.speedColour = speedColours(fastest);
     this.modes = colourModes({ materials, pieces: this.pieces, range, fastest });
-    this.whole = firstView(this.pieces, this.radii, player.last / player.rate);
+    this.whole = firstView(this.pieces, this.spheres, player.last / player.rate);
     this.spacing = gridSpacing(this.whole.radius);
     this.stage.scaleFloor(this.whole.centre, this.whole.radius, this.spacing);
     player.addEventListener("frame", () => this.refresh());
@@ -52,7 +52,7 @@ export class View extends EventTarget {
 
   refresh() {
     posesAt(this.pieces, this.player.time, this.poses);
-    explode(this.pieces, this.poses, this.amount);
+    explode(this.pieces, this.spheres, this.poses, this.amount);
     if (this.mode.id === "speed") this.stage.setPieceColours(this.speedColour(this.speeds()));
     this.stage.setPoses(this.poses);
   }
@@ -100,9 +100,9 @@ export class View extends EventTarget {
   /** Looks at the selected piece, without one at all that breaks. */
   frameSelection() {
     const piece = this.selected();
-    if (!piece) return this.stage.lookAt(this.whole.centre, this.whole.radius);
-    const at = POSE * piece.index;
-    this.stage.lookAt([...this.poses.subarray(at, at + 3)], 2 * Math.max(this.radii[piece.index], 1e-6));
+    if (!piece) return this.stage.lookAt(this.whole.centre, this.whole.radius * (1 + this.amount));
+    const { centre, radius } = this.spheres[piece.index];
+    this.stage.lookAt(placeOf(this.poses, piece.index, centre), 1.6 * Math.max(radius, 1e-6));
   }
 
   pickAt(x, y) {
