@@ -137,6 +137,17 @@ test("pieces exist from birth to death and stand between frames where glTF says"
   assert.equal(speedAt(pieces[0].track, new Moment(0.5)), 0);
 });
 
+test("what comes to rest has no speed, however far apart its keys are", () => {
+  const times = [0, 1, 2, 100];
+  const translation = { times, values: Float32Array.of(0, 0, 0, 3, 0, 0, 6, 0, 4, 6, 0, 4), step: false };
+  const speed = (time) => speedAt({ translation }, new Moment(time));
+  assert.equal(speed(0.5), 3);
+  assert.equal(speed(1.5), 5);
+  assert.equal(speed(1), Math.hypot(3, 0, 2));
+  assert.equal(speed(2), 2.5);
+  assert.equal(speed(50), 0);
+});
+
 test("a moment lies where it belongs among times that are not even", () => {
   const times = [0, 1, 4, 4.5];
   assert.deepEqual(locate(times, -1), { index: 0, share: 0 });

@@ -81,20 +81,22 @@ export function writePose(track, moment, out, at) {
   out[at + 3] = scratch[0] > 0 ? 1 : 0;
 }
 
-/** Speed of the centre of mass [m/s]: central difference of the positions at the frames, one-sided at both ends. */
+// Velocity between key `i` and the next, null where there is none; times may be far apart where nothing moves.
+function slope({ times, values }, i, axis) {
+  if (i < 0 || i + 1 >= times.length) return null;
+  return (values[3 * (i + 1) + axis] - values[3 * i + axis]) / (times[i + 1] - times[i]);
+}
+
+/** Speed of the centre of mass [m/s]: that between two keys, at a key the mean of both sides. */
 export function speedAt(track, moment) {
-  const { times, values } = track.translation;
-  if (!times || times.length < 2) return 0;
-  const { index, share } = moment.locate(times);
-  const middle = index + (share > 0.5 ? 1 : 0);
-  const before = Math.max(0, middle - 1);
-  const after = Math.min(times.length - 1, middle + 1);
-  return (
-    Math.hypot(
-      values[3 * after] - values[3 * before],
-      values[3 * after + 1] - values[3 * before + 1],
-      values[3 * after + 2] - values[3 * before + 2],
-    ) /
-    (times[after] - times[before])
-  );
+  const channel = track.translation;
+  if (!channel.times || channel.times.length < 2) return 0;
+  const { index, share } = moment.locate(channel.times);
+  const velocity = [0, 1, 2].map((axis) => {
+    const after = slope(channel, index, axis);
+    const before = slope(channel, index - 1, axis);
+    if (share > 0 || before === null) return after;
+    return after === null ? before : (before + after) / 2;
+  });
+  return Math.hypot(...velocity);
 }
