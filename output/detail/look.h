@@ -5,10 +5,13 @@
 
 namespace sunder::output::detail {
 
-/// Linear RGB in [0, 1] and the two numbers of the metallic-roughness model.
+/// Linear RGB in [0, 1], the two numbers of the metallic-roughness model, and whether one can look through.
 struct Look {
   std::array<double, 3> colour = {0.6, 0.6, 0.6};
   double metallic = 0, roughness = 0.7;
+  bool clear = false;  ///< light goes through
+
+  bool operator==(const Look&) const = default;
 };
 
 /// Of the surface material `name` on a body of `substance`: that of the preset whose name the substance contains

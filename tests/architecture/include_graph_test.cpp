@@ -37,7 +37,7 @@ const std::map<std::string, std::set<std::string>> libraries = {
     {"rigid",
      {"btBulletDynamicsCommon.h", "btBulletCollisionCommon.h", "BulletCollision", "BulletDynamics", "LinearMath",
       "tbb"}},
-    {"output", {"tiny_gltf.h", "tbb"}},
+    {"output", {"tiny_gltf.h", "embree3", "png.h", "tbb"}},
     {"validation", {}},
     {"pipeline", {"CLI", "cereal", "toml++", "nlohmann", "tbb"}},
 };

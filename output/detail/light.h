@@ -1,0 +1,40 @@
+#pragma once
+/// The studio: a sun, a sky with a soft box in it, a floor and a backdrop.
+#include "output/detail/camera.h"
+#include "output/detail/soup.h"
+
+namespace sunder::output::detail {
+
+/// Radiances are relative. All directions have unit length.
+struct Light {
+  Vec3f sun = Vec3f::UnitY();             ///< towards it
+  Vec3f box = Vec3f::UnitY();             ///< towards the middle of the soft box
+  Rgb sunlight = Rgb(2.4f, 2.25f, 2.0f);  ///< that a white matt surface facing the sun sends back
+  Rgb floor_colour = Rgb(0.17f, 0.175f, 0.185f);
+  bool has_floor = false;
+
+  /// What arrives from a direction: the sky without the sun, below the horizon the floor.
+  Rgb sky(const Vec3f& direction) const;
+
+  /// That a white matt surface with this normal sends back of the sky alone, if nothing is in the way. Approximate.
+  Rgb ambient(const Vec3f& normal) const;
+
+  /// What the camera sees where there is nothing.
+  Rgb backdrop(const Vec3f& direction) const;
+};
+
+/// Sun from above the left shoulder of the camera, soft box from the right.
+Light light_for(const Camera& camera, bool has_floor);
+
+/// Schlick, "An inexpensive BRDF model for physically-based rendering" (1994), for reflectance `straight` at normal
+/// incidence.
+Rgb fresnel(const Rgb& straight, float cosine);
+
+/// Towards a light by the microfacet model with the GGX distribution (Walter et al., "Microfacet models for refraction
+/// through rough surfaces", 2007) and the visibility term of Kelemen and Szirmay-Kalos (2001), times the cosine.
+Rgb glossy(const Rgb& straight, float roughness, const Vec3f& normal, const Vec3f& to_eye, const Vec3f& to_light);
+
+/// sRGB of a radiance, through a filmic curve (Narkowicz, "ACES filmic tone mapping curve", 2016).
+std::array<std::uint8_t, 3> developed(const Rgb& radiance);
+
+}  // namespace sunder::output::detail
