@@ -26,7 +26,12 @@ export class SortableTable {
       { class: "card" },
       element(
         "div",
-        { class: "table-scroll whole", tabindex: "0", role: "region", "aria-label": caption },
+        {
+          class: "table-scroll whole",
+          tabindex: "0",
+          role: "region",
+          "aria-label": `Table of ${caption.toLowerCase()}`,
+        },
         element(
           "table",
           { class: "rows" },
