@@ -65,6 +65,28 @@ Vec3 unit_or_zero(const Vec3& x) {
   return std::isfinite(length) && length > 0 ? Vec3(x / length) : Vec3(Vec3::Zero());
 }
 
+bool is_utf8(std::string_view text) {
+  for (std::size_t i = 0; i < text.size();) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const std::size_t length = byte < 0x80 ? 1 : byte >> 5 == 6 ? 2 : byte >> 4 == 14 ? 3 : byte >> 3 == 30 ? 4 : 0;
+    if (length == 0 || i + length > text.size()) return false;
+    for (std::size_t k = 1; k < length; ++k)
+      if (static_cast<unsigned char>(text[i + k]) >> 6 != 2) return false;
+    i += length;
+  }
+  return true;
+}
+
+// Names go into files of many formats: control characters, and bytes of other encodings than UTF-8, become underscores.
+std::string clean_name(std::string name) {
+  const bool utf8 = is_utf8(name);
+  for (char& c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7f || (byte >= 0x80 && !utf8)) c = '_';
+  }
+  return name;
+}
+
 /// All meshes of a scene as one.
 class Collector {
  public:
@@ -85,14 +107,17 @@ class Collector {
   void append_node(const aiNode& node, const aiMatrix4x4& parent, bool wanted) {
     const aiMatrix4x4 to_world = parent * node.mTransformation;
     wanted = wanted || part_ == node.mName.C_Str();
-    for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+    for (unsigned i = 0; node.mMeshes != nullptr && i < node.mNumMeshes; ++i) {
+      if (node.mMeshes[i] >= scene_.mNumMeshes) fail(ErrorKind::mesh, file_, "names a mesh that it does not hold");
       const aiMesh& mesh = *scene_.mMeshes[node.mMeshes[i]];
       if (wanted || part_ == mesh.mName.C_Str()) append_mesh(mesh, to_world);
       for (const aiString* name : {&node.mName, &mesh.mName}) {
         if (name->length > 0) names_.insert(name->C_Str());
       }
     }
-    for (unsigned i = 0; i < node.mNumChildren; ++i) append_node(*node.mChildren[i], to_world, wanted);
+    for (unsigned i = 0; i < node.mNumChildren; ++i) {
+      if (node.mChildren[i] != nullptr) append_node(*node.mChildren[i], to_world, wanted);
+    }
   }
 
   [[noreturn]] void fail_part() const {
@@ -109,6 +134,7 @@ class Collector {
   }
 
   void append_mesh(const aiMesh& part, const aiMatrix4x4& to_world) {
+    if (part.mVertices == nullptr || part.mFaces == nullptr) return;
     const Mat3 linear = linear_part(to_world);
     const Vec3 offset(to_world.a4, to_world.b4, to_world.c4);
     const int first = static_cast<int>(result_.mesh.vertices.size());
@@ -162,7 +188,7 @@ class Collector {
     for (unsigned i = 0; i < number.size(); ++i) {
       if (number[i] < 0) continue;
       number[i] = static_cast<int>(attributes.material_names.size());
-      attributes.material_names.push_back(scene_.mMaterials[i]->GetName().C_Str());
+      attributes.material_names.push_back(clean_name(scene_.mMaterials[i]->GetName().C_Str()));
     }
     // What assimp makes up where a file has no materials.
     const std::vector<std::string>& names = attributes.material_names;

@@ -111,7 +111,7 @@ void say(const InspectOptions& options, const Verdict& verdict) {
 int inspect_command(const InspectOptions& options) {
   const Verdict verdict = verdict_on(options);
   if (options.json)
-    std::cout << verdict_json(options, verdict).dump(2) << std::endl;
+    std::cout << verdict_json(options, verdict).dump(2, ' ', false, Json::error_handler_t::replace) << std::endl;
   else
     say(options, verdict);
   return verdict.exit_code();

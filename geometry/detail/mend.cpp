@@ -7,6 +7,7 @@
 #include <exception>
 #include <iterator>
 #include <map>
+#include <set>
 
 #include <CGAL/Polygon_mesh_processing/border.h>
 #include <CGAL/Polygon_mesh_processing/connected_components.h>
@@ -107,13 +108,28 @@ Shells shells_that_cross(const TriangleMesh& mesh, const FacePairs& pairs) {
 }
 
 // False when CGAL cannot represent the union as a manifold surface.
+// Whether two shells have an edge's ends in common.
+bool share_an_edge(const SurfaceMesh& a, const SurfaceMesh& b) {
+  std::set<Kernel::Point_3> points;
+  for (const auto vertex : a.vertices()) points.insert(a.point(vertex));
+  int shared = 0;
+  for (const auto vertex : b.vertices()) shared += points.contains(b.point(vertex)) ? 1 : 0;
+  return shared >= 2;
+}
+
 bool unite_groups(Shells& shells) {
+  // On anything else corefinement may never end, and neither does it on some shells that share edges.
+  const auto is_volume = [](const SurfaceMesh& shell) {
+    return CGAL::is_closed(shell) && pmp::does_bound_a_volume(shell);
+  };
   std::map<int, std::size_t> first;
   for (std::size_t i = 0; i < shells.meshes.size(); ++i) {
+    if (!is_volume(shells.meshes[i])) return false;
     const auto [entry, is_new] = first.try_emplace(shells.group[i], i);
     if (is_new) continue;
     SurfaceMesh& sum = shells.meshes[entry->second];
     SurfaceMesh united;
+    if (share_an_edge(sum, shells.meshes[i])) return false;
     if (!pmp::corefine_and_compute_union(sum, shells.meshes[i], united, np::throw_on_self_intersection(true)))
       return false;
     sum = std::move(united);
@@ -191,6 +207,7 @@ TriangleMesh without_crossings(const TriangleMesh& mesh, Steps& steps) {
 
 TriangleMesh outward(const TriangleMesh& mesh, Steps& steps) {
   return attempt(mesh, steps, "orienting", [&] {
+    if (mesh.faces.empty()) return mesh;
     SurfaceMesh surface = to_cgal(mesh);
     const bool oriented = mass_properties(mesh).volume > 0 && pmp::does_bound_a_volume(surface);
     if (oriented || !CGAL::is_closed(surface)) return mesh;

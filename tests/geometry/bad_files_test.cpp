@@ -118,6 +118,14 @@ TEST_F(BadFiles, AnyPrefixOfAMeshIsReadOrRefused) {
   EXPECT_GT(refused, 10);
 }
 
+TEST_F(BadFiles, NamesOfMaterialsBecomeText) {
+  const fs::path file = folder_ / "names.obj";
+  std::ofstream(file, std::ios::binary)
+      << "mtllib names.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl gr\xfcn\nf 1 2 3\nusemtl gr\xc3\xbcn\nf 1 2 4\n";
+  std::ofstream(folder_ / "names.mtl", std::ios::binary) << "newmtl gr\xfcn\nKd 0 1 0\nnewmtl gr\xc3\xbcn\nKd 0 1 0\n";
+  EXPECT_EQ(load_textured_mesh(file).attributes.material_names, (std::vector<std::string>{"gr_n", "gr\xc3\xbcn"}));
+}
+
 TEST_F(BadFiles, APartIsFoundOrTheOthersAreListed) {
   const fs::path file = folder_ / "two.obj";
   std::ofstream(file) << "o left\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no right\nv 5 0 0\nv 6 0 0\nv 5 1 0\nf 4 5 6\n";
