@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kUnknownTime = -1;
 const Colour kWhite = Colour::Ones();
+constexpr double kShortest = 1e-6;  // a mean of unit normals that says nothing of a direction
 constexpr double kNearlyLevel = 0.9;  // planes whose normal is this upright have no useful direction upward
 
 using Corners = std::array<Vec3, 3>;
@@ -61,6 +62,13 @@ T interpolated(const std::array<T, 3>& values, const Place& place) {
   if (place.corner >= 0) return values[place.corner];
   // In this form equal values stay what they are.
   return values[0] + place.weight[1] * (values[1] - values[0]) + place.weight[2] * (values[2] - values[0]);
+}
+
+// Rounding must not take a colour out of [0, 1].
+Colour colour_at(const std::array<Colour, 3>& colours, const Place& place) {
+  const Colour low = colours[0].cwiseMin(colours[1]).cwiseMin(colours[2]);
+  const Colour high = colours[0].cwiseMax(colours[1]).cwiseMax(colours[2]);
+  return interpolated(colours, place).cwiseMax(low).cwiseMin(high);
 }
 
 // The mean of the times that are known; negative weights, from points beside a polygon, cannot make it leave their
@@ -190,6 +198,7 @@ class Builder {
       result_.normal.push_back(same(normal_of(source_corners)));
       for (int k = 0; k < 3 && !of_body_.normal.empty(); ++k) {
         const Vec3 normal = interpolated(of_body_.normal[source], place[k]);
+        if (normal.norm() < kShortest) continue;  // between opposite normals: the face's
         result_.normal.back()[k] = place[k].corner >= 0 ? normal : normal.normalized();
       }
     }
@@ -197,7 +206,7 @@ class Builder {
     if (plan_.colour) {
       const std::array<Colour, 3>& colours = of_body_.colour[source];
       result_.colour.push_back(
-          {interpolated(colours, place[0]), interpolated(colours, place[1]), interpolated(colours, place[2])});
+          {colour_at(colours, place[0]), colour_at(colours, place[1]), colour_at(colours, place[2])});
     }
     if (plan_.damage_time) {
       result_.damage_time.push_back(same(kUnknownTime));

@@ -191,6 +191,49 @@ TEST(Attributes, AnUncutBodyKeepsItsOwnBitForBit) {
   EXPECT_TRUE(carry(body, {}, result.fragments[0], regions, all) == SurfaceAttributes{});
 }
 
+TEST(Attributes, ColoursStayWithinThoseOfTheirFace) {
+  const TriangleMesh body = sphere(0.5, 2);
+  SurfaceAttributes of_body;
+  for (std::size_t i = 0; i < body.faces.size(); ++i) {
+    of_body.colour.push_back({Colour(1, 0, 0, 1), Colour(0, 1, 0, 1), Colour(0, 0, 1, 1)});
+  }
+  const RegionBoundary regions = random_regions(body, 18, 18, 1);
+  int between = 0;
+  for (const Fragment& fragment : cut_silently(body, regions).fragments) {
+    for (const std::array<Colour, 3>& face : carry(body, of_body, fragment, regions).colour) {
+      for (const Colour& colour : face) {
+        EXPECT_GE(colour.minCoeff(), 0);
+        EXPECT_LE(colour.maxCoeff(), 1);
+        EXPECT_EQ(colour.w(), 1);
+        if (colour == Colour::Ones()) continue;  // on a crack
+        EXPECT_NEAR(colour.head<3>().sum(), 1, kLinear);
+        between += (colour.head<3>().array() > 0).count() > 1;
+      }
+    }
+  }
+  EXPECT_GT(between, 100) << "cuts pass between corners";
+}
+
+TEST(Attributes, NormalsHaveUnitLengthBetweenOppositeOnes) {
+  const TriangleMesh body = box({1, 1, 1});
+  SurfaceAttributes of_body;
+  for (std::size_t i = 0; i < body.faces.size(); ++i) {
+    of_body.normal.push_back({Vec3::UnitX(), -Vec3::UnitX(), Vec3::UnitX()});
+  }
+  // Cuts edges in the middle, where the normals of their ends cancel.
+  const RegionBoundary halves = voronoi_regions(padded(bounds(body)), {{-0.25, 0, 0}, {0.25, 0, 0}}, {0, 1});
+  int between = 0;
+  for (const Fragment& fragment : cut_silently(body, halves).fragments) {
+    for (const std::array<Vec3, 3>& face : carry(body, of_body, fragment, halves).normal) {
+      for (const Vec3& normal : face) {
+        EXPECT_NEAR(normal.norm(), 1, kLinear);
+        between += std::abs(normal.x()) != 1;
+      }
+    }
+  }
+  EXPECT_GT(between, 0);
+}
+
 TEST(Attributes, ABodyWithoutAnyGetsMaterialsAndWhatIsAsked) {
   const TriangleMesh body = box({1, 0.6, 0.3});
   const RegionBoundary regions = random_regions(body, 8, 4, 2);
