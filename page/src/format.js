@@ -18,7 +18,7 @@ export function number(x, digits = 3) {
   const size = Math.abs(x);
   if (size >= 1e6 || size < 1e-3) {
     const [mantissa, exponent] = x.toExponential(digits - 1).split("e");
-    return `${mantissa.replace("-", "−")} × 10${superscript(Number(exponent))}`;
+    return `${String(Number(mantissa)).replace("-", "−")} × 10${superscript(Number(exponent))}`;
   }
   if (size >= 10 ** digits) return count(x).replace("-", "−");
   return String(Number(x.toPrecision(digits))).replace("-", "−");
@@ -56,6 +56,7 @@ const UNITS = {
     [1e-3, "dm³"],
     [1e-6, "cm³"],
     [1e-9, "mm³"],
+    [1e-18, "µm³"],
   ],
   mass: [
     [1e3, "t"],

@@ -280,7 +280,7 @@ test("numbers are told with three digits in the unit that fits", () => {
   assert.equal(format.time(0.0041666), "4.17 ms");
   assert.equal(format.time(0), "0 s");
   assert.equal(format.memory(0), "0 kB");
-  assert.equal(format.number(3.954e-16, 2), "4.0 × 10⁻¹⁶");
+  assert.equal(format.number(3.954e-16, 2), "4 × 10⁻¹⁶");
   assert.equal(format.number(-0.25), "−0.25");
   assert.equal(format.count(9859314), "9\u202f859\u202f314");
   assert.equal(format.percent(0.17), "17 %");

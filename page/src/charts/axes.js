@@ -50,7 +50,6 @@ export function axes(width, height, x, y) {
   );
 }
 
-export const canvas = (width, height, ...children) =>
-  svg("svg", { viewBox: `0 0 ${width} ${height}`, width, height }, ...children);
+export const canvas = (width, height, ...children) => svg("svg", { viewBox: `0 0 ${width} ${height}` }, ...children);
 
 export const path = (points) => points.map(([x, y], i) => `${i ? "L" : "M"}${x.toFixed(1)} ${y.toFixed(1)}`).join("");

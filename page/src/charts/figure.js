@@ -109,7 +109,9 @@ export function figure({ title, summary, draw, table, after = [] }) {
     if (width === 0) return;
     plot.replaceChildren();
     const { tooltip, say, hush } = tooltipIn(plot);
-    const { node, marks } = draw(width);
+    // Drawings count in pixels of a page with letters of 15 pixels, and grow with the letters.
+    const scale = parseFloat(getComputedStyle(document.documentElement).fontSize) / 15;
+    const { node, marks } = draw(Math.round(width / scale));
     node.setAttribute("role", "group");
     node.setAttribute("aria-label", title);
     plot.insertBefore(node, tooltip);

@@ -86,7 +86,7 @@ function drawVolumes(width, volumes, fits, shown) {
     axes(
       width,
       HEIGHT,
-      { scale: x, ticks: logTicks(x.domain, width / 80), text: volume, title: "Volume of a fragment" },
+      { scale: x, ticks: logTicks(x.domain, width / 100), text: volume, title: "Volume of a fragment" },
       { scale: y, ticks: logTicks(y.domain), text: percent, title: "Share at least as large" },
     ),
     n <= MOST_DOTS ? null : svg("path", { class: "line series-0", d: path(steps) }),
