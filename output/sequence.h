@@ -19,6 +19,7 @@ struct Piece {
   int generation = 0;                                           ///< fractures between it and the scene's body
   double birth_time = 0;                                        ///< [s]
   double death_time = std::numeric_limits<double>::infinity();  ///< when it broke [s]
+  Vec3 birth_position = Vec3::Zero();                           ///< of its centre of mass at birth [m]
   Twist birth;                                                  ///< its motion at birth
   double birth_energy = 0;                                      ///< kinetic, of that motion [J]
   geometry::TriangleMesh mesh;                                  ///< in its own frame: origin at the centre of mass

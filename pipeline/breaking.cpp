@@ -279,6 +279,7 @@ void Simulation::hand_over(const Hit& hit, const FractureOutcome& outcome, const
   ++state_.fracture_count[static_cast<std::size_t>(parent.origin)];
   const std::vector<rigid::BodyId> ids = add_pieces(parent, outcome, pieces, body_parts, state.pose, twists);
   for (std::size_t k = 0; k < pieces.size(); ++k) {
+    pieces[k].birth_position = state.pose * body_parts[k].centre;
     pieces[k].birth = twists[k];
     pieces[k].birth_energy = kinetic_energy({parts[k]}, {twists[k]});
   }

@@ -4,6 +4,7 @@
 
 #include "geometry/damage_volume.h"
 #include "output/atomic_file.h"
+#include "output/fragments_table.h"
 #include "output/writers.h"
 
 namespace sunder::pipeline {
@@ -76,6 +77,7 @@ std::vector<PlannedFiles> planned_files(const Scene& scene) {
   if (outputs.vdb) files.push_back({"vdb/<piece>.####.vdb", 0});
   if (outputs.glb) files.push_back({"fragments.glb"});
   if (outputs.usd) files.push_back({"fragments.usda"});
+  if (outputs.fragments_csv) files.push_back({"fragments.csv"});
   if (wants_csv(outputs)) files.push_back({"transforms.csv"});
   if (wants_jsonl(outputs)) files.push_back({"transforms.jsonl"});
   if (outputs.blender) files.push_back({"import_blender.py"});
@@ -114,6 +116,7 @@ void write_solve(const Scene& scene, const SettledSolve& solve, const fs::path& 
 void write_whole_run(const Scene& scene, const output::Sequence& sequence, const fs::path& folder) {
   if (scene.outputs.glb) output::write_glb(sequence, folder / "fragments.glb");
   if (scene.outputs.usd) output::write_usda(sequence, folder / "fragments.usda");
+  if (scene.outputs.fragments_csv) output::write_fragments_csv(sequence, folder / "fragments.csv");
   if (wants_csv(scene.outputs)) output::write_transforms_csv(sequence, folder / "transforms.csv");
   if (wants_jsonl(scene.outputs)) output::write_transforms_jsonl(sequence, folder / "transforms.jsonl");
   if (scene.outputs.blender) output::write_blender_script(folder);

@@ -87,6 +87,7 @@ struct Outputs {
   bool glb = true;
   bool usd = false;
   TransformTable transforms = TransformTable::off;
+  bool fragments_csv = true;       ///< the table of all pieces
   bool vdb = false;                ///< the damage of every solve
   bool page = true;                ///< index.html
   bool blender = true;             ///< the script that loads the rest

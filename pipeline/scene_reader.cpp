@@ -110,12 +110,13 @@ void read_transforms(const Value& value, Outputs& outputs) {
   outputs.transforms = value.word<TransformTable>(kTables);
 }
 
-constexpr std::array<Key<Outputs>, 9> kOutputKeys = {{
+constexpr std::array<Key<Outputs>, 10> kOutputKeys = {{
     {"obj", read_format<&Outputs::obj>},
     {"ply", read_format<&Outputs::ply>},
     {"glb", read_format<&Outputs::glb>},
     {"usd", read_format<&Outputs::usd>},
     {"transforms", read_transforms},
+    {"fragments_csv", read_format<&Outputs::fragments_csv>},
     {"vdb", read_format<&Outputs::vdb>},
     {"page", read_format<&Outputs::page>},
     {"blender", read_format<&Outputs::blender>},

@@ -101,6 +101,7 @@ RigidPart Simulation::make_piece(const SceneBody& body) {
       detail::whole_piece(body.name, body.material.name, std::move(source.mesh), std::move(source.attributes));
   piece.id = static_cast<int>(state_.sequence.pieces.size());
   const RigidPart part = detail::centred(piece, body.material.density);
+  piece.birth_position = part.centre;
   piece.birth = {body.velocity, body.angular_velocity};
   piece.birth_energy = kinetic_energy({part}, {piece.birth});
   state_.original_volume[at(piece.id)] = piece.volume;

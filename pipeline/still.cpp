@@ -14,6 +14,7 @@
 #include "geometry/sample.h"
 #include "geometry/surface_distance.h"
 #include "output/atomic_file.h"
+#include "output/fragments_table.h"
 #include "output/writers.h"
 #include "pipeline/crack_writer.h"
 #include "pipeline/detail/mesh_catalogue.h"
@@ -58,7 +59,7 @@ output::Sequence still_sequence(const SceneBody& body, const BodyMesh& source, c
   sequence.name = body.name;
   sequence.frames.resize(1);
   const auto add = [&](output::Piece piece) {
-    detail::measured(piece, density);
+    piece.birth_position = detail::measured(piece, density).centre;
     piece.id = static_cast<int>(sequence.pieces.size());
     if (piece.parent >= 0 || cracked.cut.fragments.empty()) sequence.frames[0].poses.push_back({piece.id, {}, {}});
     sequence.pieces.push_back(std::move(piece));
@@ -90,6 +91,7 @@ void write_pieces(const output::Sequence& sequence, const std::filesystem::path&
     output::write_obj_piece(piece, folder / (piece.name + ".obj"));
   }
   output::write_glb(sequence, out / "fragments.glb");
+  output::write_fragments_csv(sequence, out / "fragments.csv");
 }
 
 Report report_of(const StillOptions& options, const std::string& name) {

@@ -137,8 +137,9 @@ namespace sunder::output {
 
 template <class Archive>
 void serialize(Archive& archive, Piece& p) {
-  archive(p.id, p.name, p.body, p.parent, p.generation, p.birth_time, p.death_time, p.birth, p.birth_energy, p.mesh,
-          p.source_face, p.surface, p.volume, p.area, p.mass, p.inside_area, p.closed, p.material);
+  archive(p.id, p.name, p.body, p.parent, p.generation, p.birth_time, p.death_time, p.birth_position, p.birth,
+          p.birth_energy, p.mesh, p.source_face, p.surface, p.volume, p.area, p.mass, p.inside_area, p.closed,
+          p.material);
 }
 
 template <class Archive>
