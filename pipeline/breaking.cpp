@@ -268,8 +268,8 @@ void Simulation::hand_over(const Hit& hit, const FractureOutcome& outcome, const
   push_partners(hit, pushes);
   std::vector<Twist> twists = twists_of(outcome, parts, state, delivered);
   // What the cracks took is no longer there to move the pieces.
-  const double crack_energy = origin_of(parent).material.fracture_energy * crack_area(outcome);
-  const double available = record.kinetic_before - energy_of(partners) - crack_energy;
+  record.crack_energy = origin_of(parent).material.fracture_energy * crack_area(outcome);
+  const double available = record.kinetic_before - energy_of(partners) - record.crack_energy;
   if (free && kinetic_energy(parts, twists) > available) {
     twists = with_energy_limit(parts, twists, available);
     ++state_.report.fallbacks["fragment_energy_limited"];

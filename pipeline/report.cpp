@@ -5,22 +5,14 @@
 
 #include <nlohmann/json.hpp>
 
+#include "pipeline/detail/statistics_json.h"
+#include "pipeline/fragment_statistics.h"
 #include "sunder_version.h"
 
 namespace sunder::pipeline {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-bool is_fragment(const output::Piece& piece) { return piece.parent >= 0; }
-
-/// Fragments that exist at the end of the run.
-std::vector<const output::Piece*> living_fragments(const output::Sequence& sequence) {
-  std::vector<const output::Piece*> living;
-  for (const output::Piece& p : sequence.pieces)
-    if (is_fragment(p) && std::isinf(p.death_time)) living.push_back(&p);
-  return living;
-}
 
 Json fragments_json(const Report& report, const output::Sequence& sequence) {
   Json list = Json::array();
@@ -86,6 +78,7 @@ Json fracture_json(const FractureRecord& f) {
           {"surface_detail", {{"vertices", f.effects[Effect::surface_detail].count}, {"limited", f.detail_limited}}},
           {"work_over_impact_energy", f.work_over_impact_energy},
           {"energy", f.energy ? ledger_json(*f.energy) : Json()},
+          {"crack_energy", f.crack_energy},
           {"momentum_error", f.momentum_error},
           {"stopped_by", f.stopped_by},
           {"damage_band", f.band_width},
@@ -121,6 +114,17 @@ Json energy_json(const Report& report) {
     list.push_back(
         {{"time", f.time}, {"body", f.body}, {"kinetic_before", f.kinetic_before}, {"kinetic_after", f.kinetic_after}});
   return list;
+}
+
+/// How large fragments are, in a line; empty without them.
+std::string sizes_line(const std::vector<const output::Piece*>& fragments) {
+  const std::vector<double> volumes = positive_volumes(fragments);
+  if (volumes.empty()) return "";
+  char line[128];
+  std::snprintf(line, sizeof line, "sizes: the largest fragment has %.3g %% of the volume of all",
+                100 * largest_share(volumes));
+  const std::optional<statistics::Law> best = statistics::best_law(volumes);
+  return line + (best ? "; law with the lowest AIC: " + std::string(name_of(*best)) : std::string()) + "\n";
 }
 
 }  // namespace
@@ -202,6 +206,7 @@ std::string to_json(const Report& report, const output::Sequence& sequence) {
       {"fragments", fragments_json(report, sequence)},
       {"fractures", fractures},
       {"energy", energy_json(report)},
+      {"statistics", detail::statistics_json(fragment_statistics(report, sequence))},
       {"mpm",
        {{"particle_steps", report.particle_steps},
         {"particle_steps_per_second",
@@ -246,6 +251,7 @@ std::string summary(const Report& report, const output::Sequence& sequence) {
   std::snprintf(line, sizeof line, "%zu fragments (%td closed) from %td fractures, %zu solves, %zu frames, %.1f s",
                 living.size(), closed, broke, report.fractures.size(), sequence.frames.size(), report.seconds.total);
   std::string text = std::string(line) + "\n";
+  text += sizes_line(living);
   text += "effects: " + names_of_effects_that_ran(report) + "\n";
   for (const std::string& note : report.notes) text += "note: " + note + "\n";
   for (const auto& [name, count] : report.fallbacks) text += "fallback: " + name + " x " + std::to_string(count) + "\n";

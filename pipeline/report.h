@@ -31,6 +31,7 @@ struct FractureRecord {
   std::optional<mpm::EnergyLedger> energy;                ///< [J]; not set: not asked for
   std::string stopped_by;                                 ///< what ended the solve
   double kinetic_before = 0, kinetic_after = 0;           ///< of the body and its partners [J]
+  double crack_energy = 0;                                ///< what the new crack faces took, G_f times area [J]
   double momentum_error = 0;                              ///< of the hand-over, relative (relative_difference)
   double band_width = 0, admissible_length = 0;           ///< l_ch, l_max [m]
   double tensile_strength = 0, propagation_strength = 0;  ///< of the material, and used at crack fronts [Pa]

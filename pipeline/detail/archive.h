@@ -185,8 +185,8 @@ template <class Archive>
 void serialize(Archive& archive, FractureRecord& f) {
   archive(f.body, f.piece, f.time, f.impulse, f.delivered_impulse, f.approach_speed, f.particles, f.steps, f.nuclei,
           f.seconds, f.fragments, f.damaged_share, f.lump_share, f.volume_error, f.effects, f.detail_limited,
-          f.work_over_impact_energy, f.energy, f.stopped_by, f.kinetic_before, f.kinetic_after, f.momentum_error,
-          f.band_width, f.admissible_length, f.tensile_strength, f.propagation_strength);
+          f.work_over_impact_energy, f.energy, f.stopped_by, f.kinetic_before, f.kinetic_after, f.crack_energy,
+          f.momentum_error, f.band_width, f.admissible_length, f.tensile_strength, f.propagation_strength);
 }
 
 template <class Archive>
