@@ -104,7 +104,6 @@ Image poster_image(const Sequence& sequence, std::size_t frame_index, const Post
   view.width = settings.width;
   view.height = settings.height;
   view.samples = settings.samples;
-  view.sky_rays = settings.sky_rays;
   std::vector<Pixel> pixels = render(view);
   smooth_light(pixels, view.width, view.height);
   return developed_image(pixels, view.width, view.height);

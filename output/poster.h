@@ -12,7 +12,6 @@ namespace sunder::output {
 struct PosterSettings {
   int width = 1280, height = 720;  ///< [pixels]
   int samples = 4;                 ///< camera rays through a pixel; four times as many where surfaces meet in it
-  int sky_rays = 2;                ///< per camera ray, that look for the sky from the surface it met
   double fill = 0.76;              ///< share of the picture's width or height that what matters takes
 };
 

@@ -12,11 +12,6 @@ const Rgb kZenith(0.50f, 0.60f, 0.78f), kHorizon(0.84f, 0.86f, 0.88f);
 const Rgb kBoxRadiance(2.6f, 2.5f, 2.35f);
 constexpr float kExposure = 0.50f;
 
-float smooth_step(float from, float to, float x) {
-  const float t = std::clamp((x - from) / (to - from), 0.0f, 1.0f);
-  return t * t * (3 - 2 * t);
-}
-
 Rgb mixed(const Rgb& a, const Rgb& b, float share) { return a + share * (b - a); }
 
 float srgb(float x) { return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f; }
@@ -30,8 +25,12 @@ Rgb Light::sky(const Vec3f& direction) const {
                                 : Rgb(0.6f * kHorizon);
     return mixed(above, below, smooth_step(0, 0.15f, -direction.y()));
   }
+  return above;
+}
+
+Rgb Light::reflected(const Vec3f& direction) const {
   constexpr float kEdge = 0.90f, kInner = 0.95f;  // cosines of the soft box's half angles
-  return above + kBoxRadiance * smooth_step(kEdge, kInner, direction.dot(box));
+  return sky(direction) + kBoxRadiance * smooth_step(kEdge, kInner, direction.dot(box));
 }
 
 Rgb Light::ambient(const Vec3f& normal) const {

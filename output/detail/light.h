@@ -5,6 +5,18 @@
 
 namespace sunder::output::detail {
 
+constexpr float kDielectric = 0.04f;  ///< reflectance at normal incidence of all that is no metal
+
+/// From 0 up to `from` to 1 beyond `to`.
+inline float smooth_step(float from, float to, float x) {
+  const float t = std::clamp((x - from) / (to - from), 0.0f, 1.0f);
+  return t * t * (3 - 2 * t);
+}
+
+inline Vec3f mirrored(const Vec3f& direction, const Vec3f& normal) {
+  return direction - 2 * direction.dot(normal) * normal;
+}
+
 /// Radiances are relative. All directions have unit length.
 struct Light {
   Vec3f sun = Vec3f::UnitY();             ///< towards it
@@ -13,8 +25,11 @@ struct Light {
   Rgb floor_colour = Rgb(0.17f, 0.175f, 0.185f);
   bool has_floor = false;
 
-  /// What arrives from a direction: the sky without the sun, below the horizon the floor.
+  /// What arrives from a direction: the sky, below the horizon the floor.
   Rgb sky(const Vec3f& direction) const;
+
+  /// With the soft box, which only reflections show: to matt surfaces it would be little light and much noise.
+  Rgb reflected(const Vec3f& direction) const;
 
   /// That a white matt surface with this normal sends back of the sky alone, if nothing is in the way. Approximate.
   Rgb ambient(const Vec3f& normal) const;

@@ -30,17 +30,19 @@ class RayScene {
   RayScene(const RayScene&) = delete;
   RayScene& operator=(const RayScene&) = delete;
 
-  /// The first triangle that each ray meets.
-  void trace(std::span<const Ray> rays, std::span<Hit> hits) const;
-
   enum class Kind { opaque, clear };
+
+  bool has(Kind kind) const;
+
+  /// The first triangle of the kind that each ray meets.
+  void trace(std::span<const Ray> rays, Kind kind, std::span<Hit> hits) const;
 
   /// 1 where a ray meets any triangle of the kind.
   void blocked(std::span<const Ray> rays, Kind kind, std::span<std::uint8_t> answers) const;
 
  private:
-  struct Handles;
-  std::unique_ptr<Handles> handles_;
+  struct Trees;
+  std::unique_ptr<Trees> trees_;
 };
 
 }  // namespace sunder::output::detail

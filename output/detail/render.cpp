@@ -90,7 +90,8 @@ class Tile {
             view_.camera.direction({2 * at.x() / view_.width - 1, 1 - 2 * at.y() / view_.height}).cast<float>();
         samples.push_back(sample);
       }
-    shade(view_, samples);
+    follow(view_, samples);
+    illuminate(view_, samples);
     return samples;
   }
 

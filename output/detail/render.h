@@ -27,7 +27,7 @@ struct View {
   Light light;
   std::optional<float> floor;  ///< height, in the soup's coordinates
   int width = 0, height = 0;   ///< [pixels]
-  int samples = 4, sky_rays = 2;
+  int samples = 4;             ///< camera rays of a pixel, each with one ray to the sun and one to the sky
 };
 
 /// Rows from the top. In parallel; random numbers depend on the pixel alone.

@@ -16,8 +16,8 @@ struct SampleRandom {
   int index = 0;  ///< of the sample
 
   /// In [0, 1), spread evenly over the samples of a pixel: the sequence of Roberts ("The unreasonable effectiveness of
-  /// quasirandom sequences", 2018), begun at a random point for each pixel and purpose. `k` of `count` pairs.
-  std::pair<float, float> pair(RandomPairs purpose, int k = 0, int count = 1) const;
+  /// quasirandom sequences", 2018), begun at a random point for each pixel and purpose.
+  std::pair<float, float> pair(RandomPairs purpose) const;
 };
 
 struct Sample {
@@ -33,7 +33,10 @@ struct Sample {
   Rgb through = Rgb::Ones();   ///< share of light that what is clear lets through to the camera
 };
 
-/// Follows the camera rays through clear surfaces to opaque ones, and lights these.
-void shade(const View& view, std::span<Sample> samples);
+/// The camera rays through clear surfaces to opaque ones, the floor or the backdrop. (paths.cpp)
+void follow(const View& view, std::span<Sample> samples);
+
+/// Sun, sky and reflections on the surfaces where they end. (lighting.cpp)
+void illuminate(const View& view, std::span<Sample> samples);
 
 }  // namespace sunder::output::detail

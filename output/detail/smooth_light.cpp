@@ -8,9 +8,9 @@
 namespace sunder::output::detail {
 namespace {
 
-constexpr std::array<int, 3> kSteps = {1, 2, 4};                           // pixels between the taps of each pass
-constexpr std::array<float, 3> kKernel = {3.0f / 8, 1.0f / 4, 1.0f / 16};  // of a cubic B-spline
-constexpr float kDeviations = 3;                                           // of the luminance that are taken for noise
+constexpr std::array<int, 4> kSteps = {1, 2, 4, 8};             // pixels between the taps of each pass
+constexpr std::array<float, 2> kKernel = {1.0f / 2, 1.0f / 4};  // of a linear B-spline
+constexpr float kDeviations = 5;                                // of the luminance that are taken for noise
 constexpr float kPlane = 0.01f;       // distance from the tangent plane, in sizes of the subject
 constexpr float kLeastNoise = 0.01f;  // standard deviation below the steps of the picture
 
@@ -29,8 +29,8 @@ class Pass {
     const float deviation = kDeviations * std::sqrt(near_variance(column, row)) + kLeastNoise;
     Rgb sum = Rgb::Zero();
     float weights = 0, variance = 0;
-    for (int dy = -2; dy <= 2; ++dy)
-      for (int dx = -2; dx <= 2; ++dx) {
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dx = -1; dx <= 1; ++dx) {
         const int x = column + step_ * dx, y = row + step_ * dy;
         if (x < 0 || y < 0 || x >= width_ || y >= height_) continue;
         const Pixel& other = pixel(x, y);

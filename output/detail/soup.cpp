@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <tuple>
+
+#include <tbb/parallel_for.h>
 
 #include "output/detail/sequence_checks.h"
 
@@ -16,10 +17,15 @@ Vec3 vertex_of(const geometry::TriangleMesh& mesh, std::size_t face, std::size_t
   return mesh.vertices[static_cast<std::size_t>(mesh.faces[face][corner])];
 }
 
-double angle_at(const geometry::TriangleMesh& mesh, std::size_t face, std::size_t corner) {
-  const Vec3 x = vertex_of(mesh, face, corner);
-  const Vec3 a = vertex_of(mesh, face, (corner + 1) % 3) - x, b = vertex_of(mesh, face, (corner + 2) % 3) - x;
-  return std::atan2(a.cross(b).norm(), a.dot(b));
+/// Between the edges at each corner.
+std::array<double, 3> angles(const geometry::TriangleMesh& mesh, std::size_t face) {
+  std::array<double, 3> result;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 x = vertex_of(mesh, face, k);
+    const Vec3 a = vertex_of(mesh, face, (k + 1) % 3) - x, b = vertex_of(mesh, face, (k + 2) % 3) - x;
+    result[k] = std::atan2(a.cross(b).norm(), a.dot(b));
+  }
+  return result;
 }
 
 /// Corners of the outside faces by vertex: those of vertex v are corners[first[v]] up to corners[first[v + 1]].
@@ -47,7 +53,11 @@ std::vector<std::array<Vec3, 3>> corner_normals(const Piece& piece) {
   const geometry::TriangleMesh& mesh = piece.mesh;
   if (!piece.surface.normal.empty()) return piece.surface.normal;
   std::vector<Vec3> flat(mesh.faces.size());
-  for (std::size_t f = 0; f < flat.size(); ++f) flat[f] = geometry::face_normal(mesh, f);
+  std::vector<std::array<double, 3>> angle(mesh.faces.size());
+  for (std::size_t f = 0; f < flat.size(); ++f) {
+    flat[f] = geometry::face_normal(mesh, f);
+    angle[f] = angles(mesh, f);
+  }
   const CornersByVertex by = outside_corners(piece);
   std::vector<std::array<Vec3, 3>> normals(mesh.faces.size());
   const double cosine = std::cos(kCrease);
@@ -58,7 +68,7 @@ std::vector<std::array<Vec3, 3>> corner_normals(const Piece& piece) {
       Vec3 sum = Vec3::Zero();
       for (std::size_t i = by.first[vertex]; i < by.first[vertex + 1]; ++i) {
         const std::size_t face = by.corners[i] / 3;
-        if (flat[face].dot(flat[f]) > cosine) sum += angle_at(mesh, face, by.corners[i] % 3) * flat[face];
+        if (flat[face].dot(flat[f]) > cosine) sum += angle[face][by.corners[i] % 3] * flat[face];
       }
       if (sum.norm() > 0) normals[f][k] = sum.normalized();
     }
@@ -66,73 +76,100 @@ std::vector<std::array<Vec3, 3>> corner_normals(const Piece& piece) {
   return normals;
 }
 
+/// Faces of one piece that look alike.
+struct Part {
+  Look look;
+  std::vector<int> faces;
+  std::size_t first = 0;  ///< triangle of the soup
+};
+
+/// What a piece needs of the soup.
+struct Share {
+  const Piece* piece = nullptr;
+  Pose pose;
+  std::size_t first_vertex = 0;
+  std::vector<Part> parts;
+};
+
 class Builder {
  public:
-  Builder(const Sequence& sequence, const Placement& placement) : sequence_(sequence), placement_(placement) {}
-
-  Soup build(const Frame& frame) {
-    for (const PiecePose& pose : frame.poses) coloured_ |= !piece_of(pose).surface.colour.empty();
-    std::vector<std::size_t> first;  // vertex of each piece
+  Builder(const Sequence& sequence, const Frame& frame, const Placement& placement) : placement_(placement) {
     for (const PiecePose& pose : frame.poses) {
-      first.push_back(soup_.vertices.size());
-      for (const Vec3& x : piece_of(pose).mesh.vertices)
-        soup_.vertices.push_back((placement_ * (pose.pose * x)).cast<float>());
-    }
-    for (const bool clear : {false, true}) {
-      for (std::size_t i = 0; i < frame.poses.size(); ++i) add(frame.poses[i], first[i], clear);
-      if (!clear) soup_.opaque = soup_.triangles.size();
-    }
-    return std::move(soup_);
-  }
-
- private:
-  const Piece& piece_of(const PiecePose& pose) const { return sequence_.pieces[static_cast<std::size_t>(pose.piece)]; }
-
-  std::uint8_t look_index(const Look& look) {
-    const auto index = std::find(soup_.looks.begin(), soup_.looks.end(), look) - soup_.looks.begin();
-    if (index == std::ssize(soup_.looks)) soup_.looks.push_back(look);
-    return static_cast<std::uint8_t>(index);
-  }
-
-  void add(const PiecePose& pose, std::size_t first, bool clear) {
-    const Piece& piece = piece_of(pose);
-    std::vector<std::array<Vec3, 3>> normals;
-    for (const auto& [material, faces] : faces_by_material(piece)) {
-      const Look look = look_of(piece.surface.material_names[static_cast<std::size_t>(material)], piece.material);
-      if (look.clear != clear) continue;
-      if (normals.empty()) normals = corner_normals(piece);
-      const std::uint8_t index = look_index(look);
-      for (const int face : faces) {
-        const auto f = static_cast<std::size_t>(face);
-        geometry::Triangle triangle = piece.mesh.faces[f];
-        for (int& corner : triangle) corner += static_cast<int>(first);
-        soup_.triangles.push_back(triangle);
-        soup_.look.push_back(index);
-        soup_.surface.push_back(2 * piece.id + (piece.inside(f) ? 1 : 0));
-        auto& turned = soup_.normal.emplace_back();
-        for (std::size_t k = 0; k < 3; ++k) turned[k] = (pose.pose.orientation * normals[f][k]).cast<float>();
-        if (coloured_) add_colour(piece, f);
+      const Piece& piece = sequence.pieces[static_cast<std::size_t>(pose.piece)];
+      Share& share = shares_.emplace_back(Share{&piece, pose.pose, 0, {}});
+      for (auto& [material, faces] : faces_by_material(piece)) {
+        const std::string& name = piece.surface.material_names[static_cast<std::size_t>(material)];
+        share.parts.push_back({look_of(name, piece.material), std::move(faces)});
       }
     }
   }
 
-  void add_colour(const Piece& piece, std::size_t face) {
-    auto& colour = soup_.colour.emplace_back();
-    colour.fill(Rgb::Ones());
-    for (std::size_t k = 0; !piece.surface.colour.empty() && k < 3; ++k)
-      colour[k] = piece.surface.colour[face][k].head<3>().cast<float>();
+  Soup build() {
+    lay_out();
+    tbb::parallel_for(std::size_t{0}, shares_.size(), [this](std::size_t i) { fill(shares_[i]); });
+    return std::move(soup_);
   }
 
-  const Sequence& sequence_;
+ private:
+  void lay_out() {
+    std::size_t vertices = 0, triangles = 0;
+    bool coloured = false;
+    for (Share& share : shares_) {
+      share.first_vertex = vertices;
+      vertices += share.piece->mesh.vertices.size();
+      coloured = coloured || !share.piece->surface.colour.empty();
+    }
+    for (const bool clear : {false, true}) {
+      for (Share& share : shares_)
+        for (Part& part : share.parts) {
+          if (part.look.clear != clear) continue;
+          part.first = triangles;
+          triangles += part.faces.size();
+          if (std::find(soup_.looks.begin(), soup_.looks.end(), part.look) == soup_.looks.end())
+            soup_.looks.push_back(part.look);
+        }
+      if (!clear) soup_.opaque = triangles;
+    }
+    soup_.vertices.resize(vertices);
+    soup_.triangles.resize(triangles);
+    soup_.normal.resize(triangles);
+    soup_.look.resize(triangles);
+    soup_.surface.resize(triangles);
+    if (coloured) soup_.colour.resize(triangles, {Rgb::Ones(), Rgb::Ones(), Rgb::Ones()});
+  }
+
+  void fill(const Share& share) {
+    const Piece& piece = *share.piece;
+    const Mat3 rotation = share.pose.orientation.toRotationMatrix();
+    for (std::size_t v = 0; v < piece.mesh.vertices.size(); ++v)
+      soup_.vertices[share.first_vertex + v] =
+          (placement_ * (share.pose.position + rotation * piece.mesh.vertices[v])).cast<float>();
+    const std::vector<std::array<Vec3, 3>> normals = corner_normals(piece);
+    for (const Part& part : share.parts) {
+      const auto look = std::find(soup_.looks.begin(), soup_.looks.end(), part.look) - soup_.looks.begin();
+      for (std::size_t i = 0; i < part.faces.size(); ++i) {
+        const auto face = static_cast<std::size_t>(part.faces[i]);
+        const std::size_t t = part.first + i;
+        for (std::size_t k = 0; k < 3; ++k) {
+          soup_.triangles[t][k] = piece.mesh.faces[face][k] + static_cast<int>(share.first_vertex);
+          soup_.normal[t][k] = (rotation * normals[face][k]).cast<float>();
+          if (!piece.surface.colour.empty()) soup_.colour[t][k] = piece.surface.colour[face][k].head<3>().cast<float>();
+        }
+        soup_.look[t] = static_cast<std::uint8_t>(look);
+        soup_.surface[t] = 2 * piece.id + (piece.inside(face) ? 1 : 0);
+      }
+    }
+  }
+
   const Placement& placement_;
-  bool coloured_ = false;
+  std::vector<Share> shares_;
   Soup soup_;
 };
 
 }  // namespace
 
 Soup soup_of(const Sequence& sequence, const Frame& frame, const Placement& placement) {
-  return Builder(sequence, placement).build(frame);
+  return Builder(sequence, frame, placement).build();
 }
 
 }  // namespace sunder::output::detail
