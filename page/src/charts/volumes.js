@@ -2,7 +2,7 @@
 import { element, svg } from "../dom.js";
 import { count, counted, number, percent, volume } from "../format.js";
 import { bestFit, lawName, survivalOf } from "../data/laws.js";
-import { sortedVolumes } from "../data/statistics.js";
+import { median, sortedVolumes } from "../data/statistics.js";
 import { axes, canvas, inner, path } from "./axes.js";
 import { figure, foldedTable } from "./figure.js";
 import { logTicks, logarithmic } from "./scales.js";
@@ -140,8 +140,7 @@ const fitRows = (fits) => ({
 });
 
 function sentence(volumes, statistics, fits) {
-  const middle = volumes[Math.floor(volumes.length / 2)];
-  const sizes = `From ${volume(volumes[0])} to ${volume(volumes.at(-1))}, half of them above ${volume(middle)}.`;
+  const sizes = `From ${volume(volumes[0])} to ${volume(volumes.at(-1))}, half of them above ${volume(median(volumes))}.`;
   if (!statistics) return `${sizes} report.json holds no statistics: no laws are fitted.`;
   if (fits.length === 0) return `${sizes} ${statistics.fits_note || "No laws are fitted."}`;
   const best = bestFit(fits);

@@ -3,6 +3,9 @@
 /** Volumes in ascending order [m³]. */
 export const sortedVolumes = (report) => report.fragments.list.map((f) => f.volume).sort((a, b) => a - b);
 
+/** Of ascending numbers; the mean of the middle two where there is no middle one. */
+export const median = (sorted) => (sorted[(sorted.length - 1) >> 1] + sorted[sorted.length >> 1]) / 2;
+
 /**
  * Fragments over time: [{ time, body, fresh, alive }], `alive` of that body. Without statistics only those that exist
  * at the end are known, by when they were born.
