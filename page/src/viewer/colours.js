@@ -70,7 +70,6 @@ const rgb = ({ lightness, chroma, hue }) => oklch(lightness, chroma, hue);
 const css = ({ lightness, chroma, hue }) => `oklch(${lightness} ${chroma} ${hue.toFixed(1)})`;
 
 export const fragmentColour = (piece) => rgb(fragmentTone(piece));
-export const fragmentCss = (piece) => css(fragmentTone(piece));
 export const generationColour = (piece) => rgb(generationTone(piece.generation));
 export const generationCss = (generation) => css(generationTone(generation));
 /** From this generation on all have one colour. */
