@@ -5,6 +5,7 @@
 #include "geometry/damage_volume.h"
 #include "output/atomic_file.h"
 #include "output/fragments_table.h"
+#include "output/poster.h"
 #include "output/writers.h"
 
 namespace sunder::pipeline {
@@ -81,6 +82,7 @@ std::vector<PlannedFiles> planned_files(const Scene& scene) {
   if (wants_csv(outputs)) files.push_back({"transforms.csv"});
   if (wants_jsonl(outputs)) files.push_back({"transforms.jsonl"});
   if (outputs.blender) files.push_back({"import_blender.py"});
+  if (outputs.poster) files.push_back({"poster.png"});
   files.push_back({"scene.toml"});
   files.push_back({"report.json"});
   if (outputs.page) files.push_back({"index.html"});
@@ -120,6 +122,9 @@ void write_whole_run(const Scene& scene, const output::Sequence& sequence, const
   if (wants_csv(scene.outputs)) output::write_transforms_csv(sequence, folder / "transforms.csv");
   if (wants_jsonl(scene.outputs)) output::write_transforms_jsonl(sequence, folder / "transforms.jsonl");
   if (scene.outputs.blender) output::write_blender_script(folder);
+  if (scene.outputs.poster)
+    output::write_poster(sequence, scene.ground ? std::optional(scene.ground->height) : std::nullopt,
+                         folder / "poster.png");
 }
 
 void remove_stale_files(const Scene& scene, const Report& report, const fs::path& folder) {

@@ -110,7 +110,7 @@ void read_transforms(const Value& value, Outputs& outputs) {
   outputs.transforms = value.word<TransformTable>(kTables);
 }
 
-constexpr std::array<Key<Outputs>, 10> kOutputKeys = {{
+constexpr std::array<Key<Outputs>, 11> kOutputKeys = {{
     {"obj", read_format<&Outputs::obj>},
     {"ply", read_format<&Outputs::ply>},
     {"glb", read_format<&Outputs::glb>},
@@ -119,6 +119,7 @@ constexpr std::array<Key<Outputs>, 10> kOutputKeys = {{
     {"fragments_csv", read_format<&Outputs::fragments_csv>},
     {"vdb", read_format<&Outputs::vdb>},
     {"page", read_format<&Outputs::page>},
+    {"poster", read_format<&Outputs::poster>},
     {"blender", read_format<&Outputs::blender>},
     {"checkpoint_interval",
      [](const Value& value, Outputs& outputs) {

@@ -39,6 +39,7 @@ position = [0.42, 0.02, -0.21]
 velocity = [0, -8, 0]
 material = "steel"
 [output]
+poster = false
 obj = false
 page = false
 vdb = true

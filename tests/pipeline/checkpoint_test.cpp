@@ -49,6 +49,7 @@ material = "steel"
 [fracture]
 refracture_delay = 0.01
 [output]
+poster = false
 checkpoint_interval = 4
 )";
 

@@ -44,6 +44,9 @@ surface_detail = "off"
 hairlines = "off"
 debris = "off"
 energy_ledger = "off"
+[output]
+page = false
+poster = false
 )";
 
 /// Instructions that callgrind counts between the begin and the end of main while the program runs the scene. Loading,

@@ -47,6 +47,8 @@ path = [{ time = 0, position = [0, 1, 0], rotation = [0, 0, 30] }, { time = 0.5,
 [output]
 obj = false
 glb = false
+page = false
+poster = false
 )"));
   const auto& frames = result.sequence.frames;
   ASSERT_EQ(frames.size(), 21u);
@@ -85,6 +87,8 @@ material = "porcelain"
 [output]
 obj = false
 glb = false
+page = false
+poster = false
 )");
   const RunResult result = run_scene(flying);
   int broken = 0;
@@ -136,6 +140,8 @@ material = "steel"
 [output]
 obj = false
 glb = false
+page = false
+poster = false
 )"));
   EXPECT_LT(last_pose(result.sequence, 1).position.x(), -0.01);
 }
@@ -165,6 +171,8 @@ breakable = false
 [output]
 obj = false
 glb = false
+page = false
+poster = false
 )"));
   const Vec3 goblet = result.sequence.frames.front().poses[0].pose.position;
   EXPECT_LT((last_pose(result.sequence, 0).position - goblet).norm(), 2e-3) << "the goblet stands";
@@ -208,6 +216,8 @@ minimum_impulse = 1e-3
 [output]
 obj = false
 glb = false
+page = false
+poster = false
 )");
   const RunResult first = run_scene(drop);
   ASSERT_EQ(first.report.fractures.size(), 1u) << "once per contact";
@@ -250,6 +260,8 @@ maximum_fractures = 50
 [output]
 obj = false
 glb = false
+page = false
+poster = false
 )");
   const auto breaks = [](const RunResult& result) {
     return std::count_if(result.report.fractures.begin(), result.report.fractures.end(),

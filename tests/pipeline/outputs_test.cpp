@@ -108,6 +108,7 @@ TEST_F(OutputsTest, NothingIsWrittenThatTheSceneDoesNotAskFor) {
   scene_.outputs = {};
   scene_.outputs.obj = scene_.outputs.glb = scene_.outputs.page = scene_.outputs.blender = false;
   scene_.outputs.fragments_csv = false;
+  scene_.outputs.poster = false;
   run_scene();
   EXPECT_EQ(files(), (std::set<std::string>{"report.json", "scene.toml"}));
 }

@@ -31,7 +31,7 @@ Scene demo(const std::string& name, double duration) {
   Scene scene = load_scene(fs::path(SUNDER_SOURCE_DIR) / "assets/scenes" / (name + ".toml"));
   scene.quality = Quality::draft;
   scene.duration = duration;
-  scene.outputs.obj = false;
+  scene.outputs.obj = scene.outputs.poster = false;
   return scene;
 }
 

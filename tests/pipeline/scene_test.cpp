@@ -184,6 +184,8 @@ debris_size = 0.003
 [output]
 obj = false
 glb = false
+page = false
+poster = false
 )";
 
 TEST_F(SceneTest, ReadsEverySection) {
