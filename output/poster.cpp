@@ -97,9 +97,9 @@ Image poster_image(const Sequence& sequence, std::size_t frame_index, const Post
   std::vector<bool> wanted(sequence.pieces.size(), false);
   for (const std::size_t i : about) wanted[static_cast<std::size_t>(frame.poses[i].piece)] = true;
   View view{soup, rays, {}, {}, {}};
-  view.camera = viewpoint(rays, points, surface_samples(soup, wanted, points),
-                          static_cast<double>(settings.width) / settings.height, settings.fill);
-  view.light = light_for(view.camera, scene.ground_height.has_value());
+  const std::vector<Vec3> samples = surface_samples(soup, wanted, points);
+  view.camera = viewpoint(rays, points, samples, static_cast<double>(settings.width) / settings.height, settings.fill);
+  view.light = light_for(view.camera, rays, samples, scene.ground_height.has_value());
   if (scene.ground_height) view.floor = static_cast<float>((placement * Vec3(0, *scene.ground_height, 0)).y());
   view.width = settings.width;
   view.height = settings.height;

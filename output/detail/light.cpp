@@ -16,6 +16,26 @@ Rgb mixed(const Rgb& a, const Rgb& b, float share) { return a + share * (b - a);
 
 float srgb(float x) { return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f; }
 
+/// Sun on the right (1) or on the left (-1).
+Light light_from(const Camera& camera, double side) {
+  const Vec3 right = side * camera.axes.col(0), back = camera.axes.col(2);
+  const Vec3 level = Vec3(back.x(), 0, back.z()).normalized();
+  Light light;
+  light.sun = (0.75 * right + 1.0 * Vec3::UnitY() + 0.25 * level).normalized().cast<float>();
+  light.box = (-0.9 * right + 0.55 * Vec3::UnitY() - 0.35 * level).normalized().cast<float>();
+  return light;
+}
+
+/// Number of the points that light from a direction gets to.
+std::ptrdiff_t reached(const RayScene& scene, std::span<const Vec3> points, const Vec3f& sun) {
+  constexpr float kLift = 1e-3f;  // in sizes of the subject
+  std::vector<Ray> rays;
+  for (const Vec3& point : points) rays.push_back({point.cast<float>() + kLift * sun, sun});
+  std::vector<std::uint8_t> blocked(rays.size());
+  scene.blocked(rays, RayScene::Kind::opaque, blocked);
+  return std::count(blocked.begin(), blocked.end(), 0);
+}
+
 }  // namespace
 
 Rgb Light::sky(const Vec3f& direction) const {
@@ -43,14 +63,12 @@ Rgb Light::backdrop(const Vec3f& direction) const {
   return mixed(low, high, smooth_step(-0.55f, 0.1f, direction.y()));
 }
 
-Light light_for(const Camera& camera, bool has_floor) {
-  const Vec3 right = camera.axes.col(0), back = camera.axes.col(2);
-  const Vec3 level = Vec3(back.x(), 0, back.z()).normalized();
-  Light light;
-  light.sun = (-0.75 * right + 1.0 * Vec3::UnitY() + 0.25 * level).normalized().cast<float>();
-  light.box = (0.9 * right + 0.55 * Vec3::UnitY() - 0.35 * level).normalized().cast<float>();
-  light.has_floor = has_floor;
-  return light;
+Light light_for(const Camera& camera, const RayScene& scene, std::span<const Vec3> samples, bool has_floor) {
+  constexpr double kClearlyMore = 1.2;
+  Light left = light_from(camera, -1), right = light_from(camera, 1);
+  left.has_floor = right.has_floor = has_floor;
+  const auto by_left = static_cast<double>(reached(scene, samples, left.sun));
+  return static_cast<double>(reached(scene, samples, right.sun)) > kClearlyMore * by_left ? right : left;
 }
 
 Rgb fresnel(const Rgb& straight, float cosine) {

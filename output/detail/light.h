@@ -1,6 +1,9 @@
 #pragma once
 /// The studio: a sun, a sky with a soft box in it, a floor and a backdrop.
+#include <algorithm>
+
 #include "output/detail/camera.h"
+#include "output/detail/ray_scene.h"
 #include "output/detail/soup.h"
 
 namespace sunder::output::detail {
@@ -38,8 +41,9 @@ struct Light {
   Rgb backdrop(const Vec3f& direction) const;
 };
 
-/// Sun from above the left shoulder of the camera, soft box from the right.
-Light light_for(const Camera& camera, bool has_floor);
+/// Sun from above one shoulder of the camera, soft box from the other side: the sun on the left, unless it reaches
+/// clearly more of the samples of the subject's surface from the right.
+Light light_for(const Camera& camera, const RayScene& scene, std::span<const Vec3> samples, bool has_floor);
 
 /// Schlick, "An inexpensive BRDF model for physically-based rendering" (1994), for reflectance `straight` at normal
 /// incidence.

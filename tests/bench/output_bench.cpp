@@ -23,6 +23,7 @@
 #include "geometry/mass_properties.h"
 #include "geometry/primitives.h"
 #include "output/atomic_file.h"
+#include "output/poster.h"
 #include "output/writers.h"
 #include "tests/bench/table.h"
 
@@ -102,6 +103,16 @@ output::Sequence flying_ball(std::vector<output::Piece> pieces, double last_rest
   }
   for (output::Piece& piece : sequence.pieces)
     if (piece.parent == 0) piece.birth_time = 1 / frame_rate;
+  return sequence;
+}
+
+/// Glass is what a still takes longest for: one sees through it.
+output::Sequence made_of(output::Sequence sequence, const std::string& substance) {
+  for (output::Piece& piece : sequence.pieces) {
+    piece.material = substance;
+    piece.surface.material_names = {output::outside_material(substance)};
+    if (piece.parent >= 0) piece.surface.material_names.push_back(output::inside_material(substance));
+  }
   return sequence;
 }
 
@@ -186,6 +197,10 @@ void measure_all(bench::Table& table) {
   measure(table, "usda_resting", folder, [&] { output::write_usda(resting, folder / "fragments.usda"); });
   measure(table, "csv", folder, [&] { output::write_transforms_csv(sequence, folder / "transforms.csv"); });
   measure(table, "jsonl", folder, [&] { output::write_transforms_jsonl(sequence, folder / "transforms.jsonl"); });
+  for (const std::string substance : {"plaster", "glass"}) {
+    const output::Sequence of = made_of(sequence, substance);
+    measure(table, "poster_" + substance, folder, [&] { output::write_poster(of, -0.6, folder / "poster.png"); });
+  }
   fs::remove_all(folder);
 }
 
