@@ -38,7 +38,7 @@ std::vector<Vec3> subject_points(const Sequence& sequence, const Frame& frame, c
   return points;
 }
 
-/// So that the middle of the points' box is the origin, on the floor if there is one, and its half diagonal is 1.
+/// So that the middle of the points' box is the origin and half its diagonal is 1.
 Placement placement_of(const std::vector<Vec3>& points) {
   Box box;
   for (const Vec3& point : points) box.extend(point);

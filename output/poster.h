@@ -20,11 +20,11 @@ struct PosterScene {
   std::optional<double> ground_height;  ///< [m]; not set: no floor
 };
 
-/// The frame that tells most of what happened. Each frame scores its number of fragments times o exp(-o) of their
-/// opening o = (s - 1) / 0.3, where s is the radius of gyration of what came of a body over that of the body before it
-/// moved, averaged over the fragments: at s = 1 the cracks are closed and cannot be seen, past s = 2 it cannot be seen
-/// any more what broke. Of equal frames the first. A run in which nothing broke is best seen at its end: the last
-/// frame. 0 for a sequence without frames.
+/// The frame that tells most of what happened. A frame scores, for each body, its number of fragments times o exp(-o)
+/// of its opening o = (s - 1) / 0.3, where s is the radius of gyration of what came of the body over that of the body
+/// in one piece: at s = 1 the cracks are closed and cannot be seen, past s = 2 it cannot be seen any more what broke.
+/// Of equal frames the first. A run in which nothing broke is best seen at its end: the last frame. 0 for a sequence
+/// without frames.
 std::size_t telling_frame(const Sequence& sequence);
 
 /// Ray traced: sun with soft shadow, light of the sky and what hides it, reflections on smooth materials, clear ones

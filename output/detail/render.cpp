@@ -2,19 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <numeric>
 
 #include <tbb/parallel_for.h>
 
-#include "core/random.h"
 #include "output/detail/samples.h"
 
 namespace sunder::output::detail {
 namespace {
 
 constexpr int kTile = 16;
-constexpr int kEdgeFactor = 4;  // samples of a mixed pixel of visible contrast over those of others
-constexpr float kVisible = 0.04f;
+constexpr int kEdgeFactor = 4;            // samples of a mixed pixel of visible contrast over those of others
+constexpr float kVisible = 0.04f;         // contrast in [0, 1]
 constexpr float kStraightNormal = 0.97f;  // length of the mean normal under which a pixel is an edge
 
 class Tile {
@@ -26,7 +25,7 @@ class Tile {
 
   void render(std::vector<Pixel>& pixels) {
     std::vector<int> all(static_cast<std::size_t>(width_ * height_)), more;
-    for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
+    std::iota(all.begin(), all.end(), 0);
     const std::vector<Sample> samples = taken(all, 0, view_.samples);
     const auto of_pixel = [&](int pixel) {
       const auto count = static_cast<std::size_t>(view_.samples);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <gtest/gtest.h>
 #include <png.h>
@@ -118,7 +119,7 @@ Sequence ball_and(Piece other, const Vec3& place) {
 
 TEST(Poster, IsFramedOnWhatMovesAndSeesPastWhatStandsInTheWay) {
   const double radius = small_settings().fill * kHeight / 2;
-  const double disc = 3.14159 * radius * radius;
+  const double disc = std::numbers::pi * radius * radius;
   // A floor slab a hundred times as large, and a wall between the ball and where the camera stands first.
   const Sequence slab = ball_and(body(geometry::box({100, 1, 100}), "plaster"), Vec3(0, -0.5, 0));
   const Sequence wall = ball_and(body(geometry::box({20, 8, 0.1}), "plaster"), Vec3(0, 4, 1));
@@ -178,7 +179,7 @@ TEST(Poster, WithoutPiecesItIsTheEmptyFloor) {
 
 TEST(Poster, TheSameBytesForAnyNumberOfThreads) {
   // Two balls in one place: which of them a ray meets first is left to the search, which must not ask the threads.
-  const auto ball = [](const std::string& material) { return body(geometry::sphere(0.5, 6), material); };
+  const auto ball = [](const std::string& material) { return body(geometry::sphere(0.5, 5), material); };
   const Sequence sequence = still_life({ball("terracotta"), ball("plaster"), ball("glass"), ball("ice")},
                                        {Vec3(0, 0.5, 0), Vec3(0, 0.5, 0), Vec3(0.6, 0.5, 0), Vec3(0.6, 0.5, 0)});
   std::vector<Image> images;
