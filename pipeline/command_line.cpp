@@ -197,7 +197,13 @@ int dispatch(int argc, char** argv, LogSettings& log) {
   auto* validate_app = app.add_subcommand(
       "validate", "Run the catalogue of validation problems; exit code 0 when every check holds, 1 when one fails");
   validate_app->add_option("--only", validate_options.only, "Ids of the problems to run (default: all)");
+  validate_app
+      ->add_option("--resolution", validate_options.resolutions,
+                   "Resolutions at which the problem named by --only is studied: 16,32,64")
+      ->delimiter(',')
+      ->check(CLI::Range(2, 100000));
   validate_app->add_option("--json", validate_options.json, "File for the results");
+  validate_app->add_option("--html", validate_options.html, "File for the results as a page with charts");
 
   try {
     app.parse(argc, argv);

@@ -4,8 +4,8 @@
 #include <thread>
 
 #include <nlohmann/json.hpp>
-#include <sys/resource.h>
 
+#include "core/resources.h"
 #include "core/stopwatch.h"
 #include "output/atomic_file.h"
 #include "pipeline/checkpoint.h"
@@ -19,12 +19,6 @@ namespace sunder::pipeline {
 namespace {
 
 int frame_count(const Scene& scene) { return last_frame(scene) - scene.start_frame + 1; }
-
-double peak_memory_mb() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024;
-}
 
 /// A run from its beginning or from a checkpoint.
 class Run {

@@ -133,6 +133,12 @@ Outcome bar_in_tension() {
   return outcome;
 }
 
+StudyPoint bar_energy_error(int cells) {
+  Outcome outcome;
+  const Bar bar = pull_bar(cells, 2.2, 2, outcome);
+  return {std::abs(bar.dissipated - 1), outcome.particle_steps};
+}
+
 /// Beyond l_max: either the strength or the energy gives way, by how much is known, and damage stays in [0, 1].
 void too_coarse(Outcome& outcome) {
   const double l_max = admissible_length(70e9, 40e6, 8);
@@ -253,7 +259,8 @@ Outcome sign_and_invariance() {
 
 std::vector<Problem> damage() {
   return {{"B1", "Bar in tension: peak and energy on three meshes", "G_f, sigma_f; Cervera and Chiumenti 2006",
-           bar_in_tension},
+           bar_in_tension,
+           Study{"dissipated energy per area [G_f]", "cells along the bar", {20, 40, 80}, {}, bar_energy_error}},
           {"B2", "Admissible length of the softening law", "closed form 2 E G_f / sigma_f^2", admissible_lengths},
           {"B3", "Cyclic loading of a point: dissipation", "closed form", cyclic_dissipation},
           {"B4", "Compression, shear, turned input", "closed form", sign_and_invariance}};

@@ -93,6 +93,11 @@ Outcome bar_vibration() {
   return outcome;
 }
 
+StudyPoint period_error(int cells) {
+  const BarVibration r = vibrate_bar(cells, 0.2);
+  return {std::abs(r.period - 1), r.particle_steps};
+}
+
 /// A6
 Outcome energy_drift() {
   Outcome outcome;
@@ -207,6 +212,11 @@ Outcome cantilever() {
   return outcome;
 }
 
+StudyPoint beam_period_error(int cells_in_depth) {
+  const Swing r = swing_beam(cells_in_depth);
+  return {std::abs(r.period - 1), r.particle_steps};
+}
+
 /// u = A sin(2 pi X) sin(pi c t), held across: E = rho = c = 1. Its body force follows from the neo-Hookean law.
 class Manufactured {
  public:
@@ -294,14 +304,23 @@ Outcome manufactured_solution() {
   return outcome;
 }
 
+StudyPoint displacement_error(int cells) {
+  Outcome outcome;
+  const double error = manufactured_error(cells, 4, outcome);
+  return {error, outcome.particle_steps};
+}
+
 }  // namespace
 
 std::vector<Problem> vibration() {
-  return {{"A5", "Free vibration of a bar, fixed at one end", "closed form T = 4L/c", bar_vibration},
+  return {{"A5", "Free vibration of a bar, fixed at one end", "closed form T = 4L/c", bar_vibration,
+           Study{"period [4L/c]", "cells along the bar", {16, 32, 64}, 0.8, period_error}},
           {"A6", "Energy drift over a period of that bar", "conservation", energy_drift},
           {"A7", "Elastic rod on a rigid wall", "wave theory: F = A v sqrt(E rho), 2L/c", rod_on_wall},
-          {"A9", "Cantilever under a load at its tip", "Euler, Timoshenko", cantilever},
-          {"A10", "Manufactured solution in a bar", "closed form; Wallstedt and Guilkey 2008", manufactured_solution}};
+          {"A9", "Cantilever under a load at its tip", "Euler, Timoshenko", cantilever,
+           Study{"period of the first mode [Euler]", "cells in its depth", {3, 6, 12}, 0.8, beam_period_error}},
+          {"A10", "Manufactured solution in a bar", "closed form; Wallstedt and Guilkey 2008", manufactured_solution,
+           Study{"displacement, L2 [amplitude]", "cells along the bar", {16, 32, 64}, 1.72, displacement_error}}};
 }
 
 }  // namespace sunder::validation::detail

@@ -1,11 +1,12 @@
 /// Every problem of the catalogue, as `sunder validate` runs it.
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <ostream>
 
 #include <gtest/gtest.h>
 
-#include "validation/problem.h"
+#include "validation/study.h"
 
 namespace sunder::validation {
 void PrintTo(const Problem& problem, std::ostream* out) { *out << problem.title; }
@@ -28,6 +29,42 @@ TEST_P(Catalogue, Holds) {
     EXPECT_TRUE(check.passed()) << check.what;
   }
   EXPECT_FALSE(outcome.checks.empty());
+}
+
+std::vector<Problem> studied() {
+  std::vector<Problem> list;
+  for (const Problem& p : sunder::validation::problems())
+    if (p.study) list.push_back(p);
+  return list;
+}
+
+class SlowStudy : public ::testing::TestWithParam<Problem> {};
+
+TEST_P(SlowStudy, ErrorFallsAsWanted) {
+  const auto result = sunder::validation::measure(*GetParam().study);
+  for (const auto& m : result.points) {
+    EXPECT_TRUE(std::isfinite(m.error)) << m.resolution;
+    EXPECT_GT(m.seconds, 0);
+  }
+  EXPECT_TRUE(result.passed) << "order " << result.order;
+}
+
+INSTANTIATE_TEST_SUITE_P(Problems, SlowStudy, ::testing::ValuesIn(studied()), [](const auto& p) { return p.param.id; });
+
+TEST(Study, FitsPowers) {
+  using sunder::validation::power_of;
+  // The slope of an exact power is its exponent, up to rounding.
+  EXPECT_NEAR(power_of({1, 2, 4}, {3, 12, 48}), 2, 1e-12);
+  EXPECT_NEAR(power_of({10, 30, 70}, {1.0 / 10, 1.0 / 30, 1.0 / 70}), -1, 1e-12);
+  EXPECT_TRUE(std::isnan(power_of({4}, {1}))) << "one point has no slope";
+  EXPECT_TRUE(std::isnan(power_of({1, 2}, {0, 1})));
+}
+
+TEST(Study, OrderThatIsTooLowFails) {
+  const auto first_order = [](int n) { return sunder::validation::StudyPoint{1.0 / n, 0}; };
+  EXPECT_TRUE(measure(sunder::validation::Study{"e", "n", {4, 8, 16}, 0.9, first_order}).passed);
+  EXPECT_FALSE(measure(sunder::validation::Study{"e", "n", {4, 8, 16}, 1.1, first_order}).passed);
+  EXPECT_TRUE(measure(sunder::validation::Study{"e", "n", {4, 8, 16}, {}, first_order}).passed);
 }
 
 INSTANTIATE_TEST_SUITE_P(Problems, Catalogue, ::testing::ValuesIn(sunder::validation::problems()),
