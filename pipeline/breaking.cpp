@@ -7,7 +7,6 @@
 
 #include "core/random.h"
 #include "pipeline/detail/piece_mesh.h"
-#include "pipeline/quality.h"
 #include "pipeline/simulation.h"
 
 namespace sunder::pipeline {
@@ -71,8 +70,8 @@ FractureInput Simulation::fracture_input(const Hit& hit, std::size_t number,
   }
   input.seed = input.solve.seed = random_word(scene_.seed, static_cast<std::uint64_t>(piece.id), number);
   input.own = live.particles;
-  input.particles = static_cast<int>(settings_of(scene_.quality).particles *
-                                     std::clamp(share_of(live), fragment_particle_share, 1.0));
+  input.particles =
+      static_cast<int>(scene_.quality.particles * std::clamp(share_of(live), fragment_particle_share, 1.0));
   input.nearly_whole = scene_.fracture.nearly_whole_volume;
   return as_asked(std::move(input), scene_, effects_);
 }

@@ -18,8 +18,6 @@
 namespace sunder::pipeline {
 namespace {
 
-const std::map<std::string, Quality> quality_words = {
-    {"draft", Quality::draft}, {"preview", Quality::preview}, {"final", Quality::final}};
 const std::map<std::string, geometry::UpAxis> axes = {
     {"x", geometry::UpAxis::x}, {"y", geometry::UpAxis::y}, {"z", geometry::UpAxis::z}};
 const std::map<std::string, LogFormat> log_words = {{"text", LogFormat::text}, {"json", LogFormat::json}};
@@ -81,6 +79,16 @@ int extract_command(StillArguments& arguments, const LogSettings& log) {
   return say_still(extract_points(options, *progress), options.out);
 }
 
+template <class Target>
+void add_quality(CLI::App& app, Target& quality, const std::string& more) {
+  const auto read = [&quality](const std::string& text) {
+    const auto known = quality_of(text);
+    if (!known) throw CLI::ValidationError("--quality", text + " is not " + quality_words());
+    quality = *known;
+  };
+  app.add_option_function<std::string>("--quality", read, quality_words() + more);
+}
+
 /// Options that `fracture` and `extract` share.
 void add_still_options(CLI::App& app, StillOptions& options, std::string& out) {
   std::vector<std::string> looks = crack::detail_preset_names();
@@ -125,8 +133,7 @@ void add_fracture(CLI::App& app, StillArguments& arguments) {
       ->delimiter(',')
       ->expected(3);
   app.add_option("--material", options.material, "Material of assets/materials.toml");
-  app.add_option("--quality", options.quality, "draft, preview or final")
-      ->transform(CLI::CheckedTransformer(quality_words));
+  add_quality(app, options.quality, "");
   app.add_option("--cells", options.cells, "No impact: shatter into so many Voronoi cells")
       ->check(CLI::Range(2, 100000));
   app.add_option("--up", options.load.up, "Up axis of the mesh: x, y or z")->transform(CLI::CheckedTransformer(axes));
@@ -147,8 +154,7 @@ void add_extract(CLI::App& app, StillArguments& arguments) {
 void add_run(CLI::App& app, RunArguments& arguments, LogSettings& log) {
   app.add_option("scene", arguments.scene, "Scene file (TOML)")->required();
   app.add_option("--out", arguments.out, "Folder for the results (default: out/<scene>)");
-  app.add_option("--quality", arguments.quality, "draft, preview or final; overrides the scene")
-      ->transform(CLI::CheckedTransformer(quality_words));
+  add_quality(app, arguments.quality, "; overrides the scene");
   app.add_option("--threads", arguments.threads, "Threads to use (default: all)")->check(CLI::Range(1, 1024));
   app.add_flag("--resume", arguments.resume, "Go on where a run into the same folder was stopped");
   app.add_option("--seed", arguments.seed, "Overrides the scene's seed");
@@ -176,8 +182,7 @@ int dispatch(int argc, char** argv, LogSettings& log) {
   auto* check_app =
       app.add_subcommand("check", "Validate a scene and its meshes, say which effects will run, simulate nothing");
   check_app->add_option("scene", check_file, "Scene file (TOML)")->required();
-  check_app->add_option("--quality", check_quality, "draft, preview or final; overrides the scene")
-      ->transform(CLI::CheckedTransformer(quality_words));
+  add_quality(*check_app, check_quality, "; overrides the scene");
   check_app->add_flag("--json", check_json, "Say the effects as JSON");
   auto* inspect_app = app.add_subcommand("inspect", "Say whether a mesh is a closed solid, and what is wrong with it");
   add_inspect(*inspect_app, inspect_options);

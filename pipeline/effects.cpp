@@ -75,8 +75,8 @@ Decision flaws_run(const EffectQuestion& q) {
 Decision two_velocity_fields_run(const EffectQuestion& q) {
   if (q.scene.fracture.damage != DamageModel::front) return {false, "damage = \"local\" has no crack faces"};
   if (q.wanted) return asked_for;
-  if (q.scene.quality != Quality::final) return {false, "the quality is not final"};
-  return {true, "the quality is final"};
+  if (q.scene.quality.particles < Quality::final.particles) return {false, "the quality is below final"};
+  return {true, "the quality is " + name_of(q.scene.quality)};
 }
 
 Decision surface_detail_runs(const EffectQuestion& q) {

@@ -1,36 +1,35 @@
 #pragma once
-/// Where on the accuracy/time curve a run sits.
-#include "pipeline/scene.h"
+/// Where on the curve of accuracy against time a run sits.
+#include <optional>
+#include <string>
 
 namespace sunder::pipeline {
 
-struct QualitySettings {
+struct Quality {
   int particles;      ///< of a body of the scene
   double rigid_rate;  ///< rigid steps per second, rounded up to a multiple of the frame rate [1/s]
+
+  bool operator==(const Quality&) const = default;
+
+  static const Quality draft, preview, final;
+  static constexpr int least_particles = 500, most_particles = 2'000'000;
+
+  /// By how finely fractures are resolved; the rigid rate is that of the level below it. `particles` in
+  /// [least_particles, most_particles].
+  static Quality of(int particles);
 };
 
-constexpr QualitySettings settings_of(Quality quality) {
-  switch (quality) {
-    case Quality::draft:
-      return {6000, 240};
-    case Quality::preview:
-      return {20000, 480};
-    case Quality::final:
-      return {60000, 960};
-  }
-  return {20000, 480};
-}
+inline constexpr Quality Quality::draft{6000, 240};
+inline constexpr Quality Quality::preview{20000, 480};
+inline constexpr Quality Quality::final{60000, 960};
 
-constexpr const char* name_of(Quality quality) {
-  switch (quality) {
-    case Quality::draft:
-      return "draft";
-    case Quality::preview:
-      return "preview";
-    case Quality::final:
-      return "final";
-  }
-  return "";
-}
+/// "draft", "preview", "final", or the number of particles.
+std::string name_of(const Quality& quality);
+
+/// What name_of gives, read back; not set for anything else.
+std::optional<Quality> quality_of(const std::string& name);
+
+/// What name_of can give, for messages.
+std::string quality_words();
 
 }  // namespace sunder::pipeline

@@ -10,7 +10,6 @@
 #include "output/atomic_file.h"
 #include "pipeline/checkpoint.h"
 #include "pipeline/outputs.h"
-#include "pipeline/quality.h"
 #include "pipeline/report_page.h"
 #include "pipeline/simulation.h"
 #include "sunder_version.h"

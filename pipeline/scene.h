@@ -12,11 +12,11 @@
 #include "pipeline/effects.h"
 #include "pipeline/material.h"
 #include "pipeline/motion_path.h"
+#include "pipeline/quality.h"
 #include "rigid/world.h"
 
 namespace sunder::pipeline {
 
-enum class Quality { draft, preview, final };
 enum class DamageModel { front, local };
 enum class LoadModel { contact, prescribed };
 enum class Anchor { base, centre, origin };
@@ -90,7 +90,7 @@ struct Outputs {
   bool fragments_csv = true;       ///< the table of all pieces
   bool vdb = false;                ///< the damage of every solve
   bool page = true;                ///< index.html
-  bool poster = true;  ///< poster.png
+  bool poster = true;              ///< poster.png
   bool blender = true;             ///< the script that loads the rest
   std::optional<int> first_frame;  ///< of the files that come one a frame; not set: the scene's
   std::optional<int> last_frame;   ///< with which the run ends; not set: the scene's

@@ -10,7 +10,6 @@
 
 #include "output/atomic_file.h"
 #include "pipeline/outputs.h"
-#include "pipeline/quality.h"
 #include "pipeline/run.h"
 #include "pipeline/simulation.h"
 

@@ -17,6 +17,10 @@ namespace {
 constexpr std::int64_t kMaximumCount = std::numeric_limits<int>::max();
 
 void read_quality(const Value& value, Scene& scene) {
+  if (value.is_integer()) {
+    scene.quality = Quality::of(static_cast<int>(value.integer(Quality::least_particles, Quality::most_particles)));
+    return;
+  }
   constexpr std::array<std::pair<std::string_view, Quality>, 3> kQualities = {
       {{"draft", Quality::draft}, {"preview", Quality::preview}, {"final", Quality::final}}};
   scene.quality = value.word<Quality>(kQualities);

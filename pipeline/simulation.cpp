@@ -13,7 +13,6 @@
 #include "mpm/contact_load.h"
 #include "pipeline/detail/piece_mesh.h"
 #include "pipeline/lifecycle.h"
-#include "pipeline/quality.h"
 
 namespace sunder::pipeline {
 namespace {
@@ -42,7 +41,7 @@ rigid::WorldSettings world_settings(const Scene& scene, int steps_per_frame) {
 }
 
 int steps_in_frame(const Scene& scene) {
-  return static_cast<int>(std::ceil(settings_of(scene.quality).rigid_rate / scene.frame_rate - 1e-9));
+  return static_cast<int>(std::ceil(scene.quality.rigid_rate / scene.frame_rate - 1e-9));
 }
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }

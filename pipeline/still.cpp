@@ -20,7 +20,6 @@
 #include "pipeline/detail/mesh_catalogue.h"
 #include "pipeline/detail/piece_mesh.h"
 #include "pipeline/fracture.h"
-#include "pipeline/quality.h"
 
 namespace sunder::pipeline {
 namespace {
@@ -170,7 +169,7 @@ FractureInput fracture_input(const FractureOptions& options, const geometry::Tri
   input.material = material;
   input.loads = {load};
   input.partners = {{mass}};
-  input.particles = settings_of(options.quality).particles;
+  input.particles = options.quality.particles;
   input.seed = input.solve.seed = options.seed;
   return input;
 }

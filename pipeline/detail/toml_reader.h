@@ -42,6 +42,7 @@ class Value {
   [[noreturn]] void fail(const std::string& message) const { detail::fail(*file_, line(), subject_ + ": " + message); }
 
   bool is_text() const { return node_->is_string(); }
+  bool is_integer() const { return node_->is_integer(); }
   bool is_flag() const { return node_->is_boolean(); }
   /// "expected three numbers, found a string".
   [[noreturn]] void fail_type(std::string_view expected) const;

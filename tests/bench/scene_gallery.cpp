@@ -1,7 +1,7 @@
 /// The pictures of docs/gallery.md: runs scenes and draws the telling frame of each as <folder>/<scene>.png, small and
 /// finely sampled. Prints a row of the page's table for each: fragments at the end, quality, seconds.
 ///
-///     scene_gallery FOLDER SCENE.toml... [--quality draft|preview|final]
+///     scene_gallery FOLDER SCENE.toml... [--quality LEVEL]
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -31,7 +31,7 @@ struct Arguments {
 };
 
 [[noreturn]] void usage() {
-  std::fputs("usage: scene_gallery FOLDER SCENE.toml... [--quality draft|preview|final]\n", stderr);
+  std::fputs("usage: scene_gallery FOLDER SCENE.toml... [--quality LEVEL]\n", stderr);
   std::exit(static_cast<int>(ErrorKind::usage));
 }
 
@@ -49,13 +49,6 @@ Arguments read_arguments(int argc, char** argv) {
   }
   if (arguments.scenes.empty()) usage();
   return arguments;
-}
-
-pipeline::Quality quality_of(const std::string& name) {
-  using pipeline::Quality;
-  for (const Quality quality : {Quality::draft, Quality::preview, Quality::final})
-    if (pipeline::name_of(quality) == name) return quality;
-  usage();
 }
 
 /// As wide as the file may be large.
@@ -89,7 +82,11 @@ std::string fragments(const output::Sequence& sequence) {
 
 void draw(const Arguments& arguments, const fs::path& file) {
   pipeline::Scene scene = pipeline::load_scene(file);
-  if (!arguments.quality.empty()) scene.quality = quality_of(arguments.quality);
+  if (!arguments.quality.empty()) {
+    const auto quality = pipeline::quality_of(arguments.quality);
+    if (!quality) usage();
+    scene.quality = *quality;
+  }
   pipeline::Outputs& outputs = scene.outputs;
   outputs.obj = outputs.glb = outputs.page = outputs.blender = outputs.poster = false;
   outputs.checkpoint_interval = 0;
@@ -104,7 +101,7 @@ void draw(const Arguments& arguments, const fs::path& file) {
     png = picture(scene, result.sequence);
   }
   output::write_atomically(arguments.folder / (scene.name + ".png"), png);
-  std::printf("| `%s` | %s | %s | %.0f | %.1f |\n", scene.name.c_str(), pipeline::name_of(scene.quality),
+  std::printf("| `%s` | %s | %s | %.0f | %.1f |\n", scene.name.c_str(), pipeline::name_of(scene.quality).c_str(),
               fragments(result.sequence).c_str(), result.report.seconds.total, seconds);
   std::fflush(stdout);
 }

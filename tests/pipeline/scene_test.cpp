@@ -290,6 +290,7 @@ TEST_F(SceneTest, NamesLineAndRemedyOfMistakesInSceneAndBodies) {
       {"[scene]\nseed = -1\n" + kBall, "expected an integer from 0"},
       {"[scene]\nseed = 1.5\n" + kBall, "expected an integer, found a number"},
       {"[scene]\nstart_frame = 3000000000\n" + kBall, "expected an integer from 0 to"},
+      {"[scene]\nquality = 100\n" + kBall, "500"},
       {"[scene]\nquality = 'finl'\n" + kBall, "did you mean 'final'?"},
       {"scene = 3\n" + kBall, "scene.toml:1: expected a section [scene]"},
       {"[scnee]\n" + kBall, "scene.toml:1: scene: unknown key 'scnee'; did you mean 'scene'?"},
