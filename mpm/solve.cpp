@@ -88,11 +88,13 @@ struct Scales {
   double particle_volume, cell_size, wave_speed, time_step, transit;
 
   Scales(const SolveInput& input, const SolveSettings& settings)
-      : particle_volume(input.volume / static_cast<double>(input.points.size())),
+      : Scales(input, box_of(input.points), static_cast<long>(input.points.size()), settings) {}
+  Scales(const SolveInput& input, const Box& box, long count, const SolveSettings& settings)
+      : particle_volume(input.volume / static_cast<double>(count)),
         cell_size(std::cbrt(particle_volume) / settings.cells_per_spacing),
         wave_speed(input.material.p_wave_speed()),
         time_step(settings.cfl * cell_size / wave_speed),
-        transit(box_of(input.points).sizes().maxCoeff() / wave_speed) {
+        transit(box.sizes().maxCoeff() / wave_speed) {
     // A light partner on the stiff contact swings faster than waves cross a cell.
     for (const Load& load : input.loads) {
       const double mass = input.partners[static_cast<std::size_t>(load.partner)].mass;
@@ -111,6 +113,16 @@ ContinuumSettings continuum_settings(const SolveInput& input, const SolveSetting
   result.spline = settings.spline;
   result.books_energy = settings.energy_ledger;
   return result;
+}
+
+/// Of the longest contact of a body of this mass.
+double contact_duration(const SolveInput& input, double body_mass) {
+  double longest = 0;
+  for (const Load& load : input.loads) {
+    const double mass = reduced_mass(body_mass, input.partners[static_cast<std::size_t>(load.partner)].mass);
+    longest = std::max(longest, impact_duration(mass, load.approach_speed, load.pair));
+  }
+  return longest;
 }
 
 class Solver {
@@ -164,9 +176,8 @@ Solver::Solver(const SolveInput& input, const SolveSettings& settings)
   for (const Load& load : input.loads) {
     const Partner& partner = input.partners[static_cast<std::size_t>(load.partner)];
     loads_.emplace_back(load, body_mass_, partner, input.material, settings, body_);
-    contact_duration_ = std::max(
-        contact_duration_, impact_duration(reduced_mass(body_mass_, partner.mass), load.approach_speed, load.pair));
   }
+  contact_duration_ = contact_duration(input, body_mass_);
   latest_end_ = contact_duration_ + settings.most_transits * scales_.transit;
 }
 
@@ -299,6 +310,16 @@ const char* name_of(StopReason reason) {
       return "step limit";
   }
   return "";
+}
+
+Forecast forecast(const SolveInput& input, const Box& box, long count, const SolveSettings& settings) {
+  const Scales scales(input, box, count, settings);
+  const double contact = contact_duration(input, input.material.density * input.volume);
+  const auto steps = [&](double time) {
+    return std::min(settings.most_steps, static_cast<long>(std::ceil(time / scales.time_step)));
+  };
+  return {scales.cell_size, scales.time_step, steps(std::max(contact, settings.quiet_transits * scales.transit)),
+          steps(contact + settings.most_transits * scales.transit)};
 }
 
 SolveResult solve(const SolveInput& input, const SolveSettings& settings, Progress& progress) {

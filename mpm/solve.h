@@ -153,6 +153,17 @@ struct SolveInput {
   PriorDamage prior = {};             ///< what earlier solves did to these particles
 };
 
+/// How long a solve will be, known before its points are.
+struct Forecast {
+  double cell_size = 0, time_step = 0;  ///< h [m], [s]
+  long least_steps = 0;                 ///< when nothing fails
+  long most_steps = 0;                  ///< when things fail to the end
+};
+
+/// Of `input` with `count` points in `box`; its own points are not looked at. The time that lies between the bounds is
+/// not known before the solve.
+Forecast forecast(const SolveInput& input, const Box& box, long count, const SolveSettings& settings);
+
 /// The result does not depend on the number of threads. Errors: ErrorKind::unstable when a value stops being finite
 /// (names the particle and its state), ErrorKind::interrupted from `progress`, ErrorKind::usage for an impossible
 /// material or load, or a time step beyond the limit of stability.

@@ -16,7 +16,12 @@ constexpr int left = 64, right = 16, top = 34, bottom = 46, legend_line = 15;
 
 std::string number(double x) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.4g", x);
+  if (std::abs(x) >= 1e6 && std::abs(x) < 1e9)
+    std::snprintf(text, sizeof text, "%.4g M", 1e-6 * x);
+  else if (std::abs(x) >= 1e4 && std::abs(x) < 1e6)
+    std::snprintf(text, sizeof text, "%.4g k", 1e-3 * x);
+  else
+    std::snprintf(text, sizeof text, "%.4g", x);
   return text;
 }
 
@@ -86,12 +91,12 @@ void add_axes(std::string& out, const Chart& chart, const Scale& x, const Scale&
   const double plot_right = chart.width - right;
   for (const double tick : x.ticks()) {
     const double at = x.pixel(tick);
-    add(out, "<path d=\"M%.1f %d V%.1f\" class=\"grid\"/>\n", at, top, plot_bottom);
+    add(out, "<path d=\"M%.1f %d V%.1f\" class=\"rule\"/>\n", at, top, plot_bottom);
     add_text(out, at, plot_bottom + 15, "middle", number(tick));
   }
   for (const double tick : y.ticks()) {
     const double at = y.pixel(tick);
-    add(out, "<path d=\"M%d %.1f H%.1f\" class=\"grid\"/>\n", left, at, plot_right);
+    add(out, "<path d=\"M%d %.1f H%.1f\" class=\"rule\"/>\n", left, at, plot_right);
     add_text(out, left - 6, at + 4, "end", number(tick));
   }
   add(out, "<path d=\"M%d %d V%.1f H%.1f\" class=\"axis\"/>\n", left, top, plot_bottom, plot_right);
@@ -154,7 +159,7 @@ std::string svg(const Chart& chart) {
       chart.height + legend, chart.width);
   out +=
       "<style>text{font:12px sans-serif;fill:#777}.title{font-weight:bold;font-size:13px}"
-      ".grid{stroke:#999;stroke-opacity:.3}.axis{stroke:#777;fill:none}</style>\n";
+      ".rule{stroke:#999;stroke-opacity:.3}.axis{stroke:#777;fill:none}</style>\n";
   add(out, "<text class=\"title\" x=\"%d\" y=\"18\">", left);
   out.append(escaped_xml(chart.title)).append("</text>\n");
   const double plot_bottom = chart.height - bottom;

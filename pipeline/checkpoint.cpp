@@ -71,9 +71,8 @@ std::string fingerprint(const Scene& scene) {
   std::set<fs::path> meshes;
   for (const SceneBody& body : scene.bodies) meshes.insert(body.mesh.file);
   for (const fs::path& mesh : meshes) hash.add_file(mesh);
-  for (const double number :
-       {scene.duration, scene.frame_rate, static_cast<double>(scene.quality.particles), scene.quality.rigid_rate})
-    hash.add(number);
+  for (const double number : {scene.duration, scene.frame_rate}) hash.add(number);
+  hash.add(scene.time_budget ? "within " + std::to_string(*scene.time_budget) : name_of(scene.quality));
   for (const auto& frame : {scene.outputs.first_frame, scene.outputs.last_frame})
     hash.add(frame ? std::to_string(*frame) : "all");
   hash.add(std::to_string(scene.seed));

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "geometry/load.h"
+#include "pipeline/accuracy.h"
 #include "pipeline/inspect_command.h"
 #include "pipeline/progress_display.h"
 #include "pipeline/report_command.h"
@@ -27,6 +28,14 @@ const std::map<std::string, ProgressFormat> progress_words = {
 int validate_command(const ValidateOptions& options) {
   const auto progress = make_progress_display({});
   return validate(options, *progress) ? 0 : 1;
+}
+
+int accuracy_command(AccuracyOptions options) {
+  if (options.out.empty()) options.out = std::filesystem::path("out") / (options.scene.stem().string() + "_accuracy");
+  const auto progress = make_progress_display({});
+  measure_accuracy(options, *progress);
+  std::cout << "written to " << options.out.string() << std::endl;
+  return 0;
 }
 
 using Triple = std::vector<double>;
@@ -87,6 +96,15 @@ void add_quality(CLI::App& app, Target& quality, const std::string& more) {
     quality = *known;
   };
   app.add_option_function<std::string>("--quality", read, quality_words() + more);
+}
+
+void add_time_budget(CLI::App& app, std::optional<double>& seconds) {
+  const auto read = [&seconds](const std::string& text) {
+    seconds = duration_of(text);
+    if (!seconds) throw CLI::ValidationError("--time-budget", text + " is not a time such as 90, '90 s', 5min or 2h");
+  };
+  app.add_option_function<std::string>("--time-budget", read,
+                                       "The finest quality with which a run takes so long: 90, 5min, 2h");
 }
 
 /// Options that `fracture` and `extract` share.
@@ -155,6 +173,7 @@ void add_run(CLI::App& app, RunArguments& arguments, LogSettings& log) {
   app.add_option("scene", arguments.scene, "Scene file (TOML)")->required();
   app.add_option("--out", arguments.out, "Folder for the results (default: out/<scene>)");
   add_quality(app, arguments.quality, "; overrides the scene");
+  add_time_budget(app, arguments.time_budget);
   app.add_option("--threads", arguments.threads, "Threads to use (default: all)")->check(CLI::Range(1, 1024));
   app.add_flag("--resume", arguments.resume, "Go on where a run into the same folder was stopped");
   app.add_option("--seed", arguments.seed, "Overrides the scene's seed");
@@ -175,15 +194,15 @@ int dispatch(int argc, char** argv, LogSettings& log) {
   auto* run_app = app.add_subcommand("run", "Simulate a scene");
   add_run(*run_app, run_arguments, log);
 
-  std::string check_file;
+  CheckArguments check;
   InspectOptions inspect_options;
-  std::optional<Quality> check_quality;
-  bool check_json = false;
-  auto* check_app =
-      app.add_subcommand("check", "Validate a scene and its meshes, say which effects will run, simulate nothing");
-  check_app->add_option("scene", check_file, "Scene file (TOML)")->required();
-  add_quality(*check_app, check_quality, "; overrides the scene");
-  check_app->add_flag("--json", check_json, "Say the effects as JSON");
+  auto* check_app = app.add_subcommand(
+      "check", "Validate a scene and its meshes, say which effects will run and what a run takes, solve nothing");
+  check_app->add_option("scene", check.scene, "Scene file (TOML)")->required();
+  add_quality(*check_app, check.quality, "; overrides the scene");
+  add_time_budget(*check_app, check.time_budget);
+  check_app->add_option("--threads", check.threads, "Threads of the run (default: all)")->check(CLI::Range(1, 1024));
+  check_app->add_flag("--json", check.json, "Say it as JSON");
   auto* inspect_app = app.add_subcommand("inspect", "Say whether a mesh is a closed solid, and what is wrong with it");
   add_inspect(*inspect_app, inspect_options);
 
@@ -197,6 +216,17 @@ int dispatch(int argc, char** argv, LogSettings& log) {
   std::string report_folder;
   auto* report_app = app.add_subcommand("report", "Write the report page of a run anew, from the files in its folder");
   report_app->add_option("folder", report_folder, "Folder of the results")->required();
+
+  AccuracyOptions accuracy;
+  auto* accuracy_app = app.add_subcommand(
+      "accuracy", "Solve the first fracture of a scene at ever finer resolutions: what accuracy costs in time");
+  accuracy_app->add_option("scene", accuracy.scene, "Scene file (TOML)")->required();
+  accuracy_app->add_option("--out", accuracy.out, "Folder for the results (default: out/<scene>_accuracy)");
+  accuracy_app->add_option("--particles", accuracy.most_particles, "Of the finest resolution")
+      ->check(CLI::Range(Quality::least_particles, Quality::most_particles));
+  accuracy_app->add_option("--seeds", accuracy.seeds, "By which the spread is measured")->check(CLI::Range(1, 100));
+  accuracy_app->add_option("--hits", accuracy.hits, "How many of the hits that break bodies are studied")
+      ->check(CLI::Range(1, 1000));
 
   ValidateOptions validate_options;
   auto* validate_app = app.add_subcommand(
@@ -216,10 +246,11 @@ int dispatch(int argc, char** argv, LogSettings& log) {
     return app.exit(error) == 0 ? 0 : static_cast<int>(ErrorKind::usage);
   }
   if (*run_app) return run_command(run_arguments, log);
-  if (*check_app) return check_command(check_file, check_quality, check_json);
+  if (*check_app) return check_command(check);
   if (*fracture_app) return fracture_command(still, log);
   if (*extract_app) return extract_command(still, log);
   if (*report_app) return report_command(report_folder);
+  if (*accuracy_app) return accuracy_command(accuracy);
   if (*validate_app) return validate_command(validate_options);
   return inspect_command(inspect_options);
 }

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
+#include <string_view>
 #include <utility>
 
 namespace sunder::pipeline {
@@ -34,6 +36,21 @@ std::optional<Quality> quality_of(const std::string& name) {
   if (read.ec != std::errc() || read.ptr != end) return {};
   if (particles < Quality::least_particles || particles > Quality::most_particles) return {};
   return Quality::of(particles);
+}
+
+std::string accuracy_of(const Quality& quality) { return "quality " + name_of(quality); }
+
+std::optional<double> duration_of(const std::string& text) {
+  double number = 0;
+  const char* end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, number);
+  if (read.ec != std::errc() || !(number > 0) || !std::isfinite(number)) return {};
+  std::string unit(read.ptr, end);
+  unit.erase(0, unit.find_first_not_of(' '));
+  constexpr std::array<std::pair<std::string_view, double>, 4> units = {{{"", 1}, {"s", 1}, {"min", 60}, {"h", 3600}}};
+  for (const auto& [name, seconds] : units)
+    if (unit == name) return number * seconds;
+  return {};
 }
 
 std::string quality_words() {

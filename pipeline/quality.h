@@ -29,6 +29,13 @@ std::string name_of(const Quality& quality);
 /// What name_of gives, read back; not set for anything else.
 std::optional<Quality> quality_of(const std::string& name);
 
+/// What was measured of results of this quality against much finer ones (docs/accuracy.md), in a sentence.
+std::string accuracy_of(const Quality& quality);
+
+/// Seconds of "90 s", "5 min" or "2 h", also without the space; a number alone is seconds. Not set for anything else,
+/// or a time that is not positive.
+std::optional<double> duration_of(const std::string& text);
+
 /// What name_of can give, for messages.
 std::string quality_words();
 

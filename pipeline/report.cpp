@@ -127,6 +127,15 @@ std::string sizes_line(const std::vector<const output::Piece*>& fragments) {
   return line + (best ? "; law with the lowest AIC: " + std::string(name_of(*best)) : std::string()) + "\n";
 }
 
+Json prediction_json(const Report& report) {
+  if (!report.prediction) return nullptr;
+  const Prediction& p = *report.prediction;
+  return {{"processor_seconds", p.processor_seconds},
+          {"seconds", p.seconds},
+          {"peak_memory_mb", p.memory_mb},
+          {"solves", p.solves}};
+}
+
 }  // namespace
 
 FractureRecord record_of(const FractureInput& input, const FractureOutcome& outcome) {
@@ -202,6 +211,7 @@ std::string to_json(const Report& report, const output::Sequence& sequence) {
       {"quality", report.quality},
       {"threads", report.threads},
       {"interrupted", report.interrupted},
+      {"prediction", prediction_json(report)},
       {"effects", effects_json(report.effects)},
       {"fragments", fragments_json(report, sequence)},
       {"fractures", fractures},
@@ -227,6 +237,7 @@ std::string to_json(const Report& report, const output::Sequence& sequence) {
       {"frames", {{"count", sequence.frames.size()}, {"first", sequence.start_frame}, {"rate", sequence.frame_rate}}},
       {"seconds",
        {{"total", s.total},
+        {"processor", s.processor},
         {"setup", s.setup},
         {"rigid", s.rigid},
         {"contact_search", report.motion.work.search_seconds},

@@ -67,12 +67,21 @@ struct MotionRecord {
   double fastest_time = 0;      ///< [s]
 };
 
+/// What a run will take, before it runs.
+struct Prediction {
+  double processor_seconds = 0;  ///< of all threads
+  double seconds = 0;            ///< with the threads asked for, on a machine that does nothing else
+  double memory_mb = 0;          ///< most at once
+  int solves = 0;                ///< of bodies and fragments
+};
+
 struct Report {
   std::string scene, quality;
   std::string fingerprint;  ///< of all that decides the results (pipeline/checkpoint.h)
   std::uint64_t seed = 0;
   int threads = 0;
   bool interrupted = false;
+  std::optional<Prediction> prediction;  ///< not set: nobody asked
   std::vector<EffectRecord> effects;
   std::vector<FractureRecord> fractures;
   std::optional<ExtractRecord> extract;
@@ -81,7 +90,9 @@ struct Report {
   long particle_steps = 0;
   double cut_volume_error = 0;  ///< of a cut that no fracture made
   struct Seconds {
-    double total = 0, setup = 0, rigid = 0, sample = 0, solve = 0, extract = 0, cut = 0, write = 0, checkpoint = 0;
+    double total = 0;
+    double processor = 0;  ///< of all threads, for the whole run
+    double setup = 0, rigid = 0, sample = 0, solve = 0, extract = 0, cut = 0, write = 0, checkpoint = 0;
   } seconds;
   Fallbacks fallbacks;
   double peak_memory_mb = 0;

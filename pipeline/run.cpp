@@ -10,6 +10,7 @@
 #include "output/atomic_file.h"
 #include "pipeline/checkpoint.h"
 #include "pipeline/outputs.h"
+#include "pipeline/prediction.h"
 #include "pipeline/report_page.h"
 #include "pipeline/simulation.h"
 #include "sunder_version.h"
@@ -19,10 +20,22 @@ namespace {
 
 int frame_count(const Scene& scene) { return last_frame(scene) - scene.start_frame + 1; }
 
+std::filesystem::path checkpoint_file(const std::filesystem::path& out) { return out / "checkpoint.bin"; }
+
+/// The scene at the quality that its time budget allows, or that it was begun with.
+Scene within_budget(Scene scene, const RunOptions& options, const std::optional<Checkpoint>& checkpoint,
+                    Progress& progress) {
+  if (!scene.time_budget) return scene;
+  const auto begun = checkpoint ? quality_of(checkpoint->simulation.report.quality) : std::nullopt;
+  scene.quality = begun ? *begun : affordable_quality(scene, options, progress);
+  return scene;
+}
+
 /// A run from its beginning or from a checkpoint.
 class Run {
  public:
-  Run(const Scene& scene, const RunOptions& options, Progress& progress)
+  /// Goes on from `checkpoint`, if there is one.
+  Run(const Scene& scene, const RunOptions& options, std::optional<Checkpoint> checkpoint, Progress& progress)
       : scene_(scene), options_(options), fingerprint_(fingerprint(scene)) {
     options_.on_solve = [this, &options](const SettledSolve& solve) {
       {
@@ -31,13 +44,17 @@ class Run {
       }
       options.on_solve(solve);
     };
-    std::optional<Checkpoint> checkpoint;
-    if (options.resume) checkpoint = read_checkpoint(file(), fingerprint_);
     if (checkpoint) {
       steps_ = checkpoint->steps;
       simulation_.emplace(scene, options_, checkpoint->world, std::move(checkpoint->simulation));
     } else {
+      const double start = cpu_seconds();
       simulation_.emplace(scene, options_, progress);
+      Report& report = simulation_->report();
+      report.quality = name_of(scene.quality);
+      if (options.predict)
+        report.prediction = Forecaster(scene, *simulation_, cpu_seconds() - start, Forecaster::brief_seconds, progress)
+                                .at(scene.quality, options.threads);
       record();
     }
   }
@@ -73,7 +90,7 @@ class Run {
   }
 
  private:
-  std::filesystem::path file() const { return options_.out / "checkpoint.bin"; }
+  std::filesystem::path file() const { return checkpoint_file(options_.out); }
   int frames_done() const { return static_cast<int>(simulation_->sequence().frames.size()); }
 
   void record() {
@@ -105,15 +122,19 @@ bool is_complete(const Scene& scene, const std::filesystem::path& out) {
          report.value("git", "") == SUNDER_GIT && !report.value("interrupted", true);
 }
 
-RunResult run(const Scene& scene, const RunOptions& options, Progress& progress) {
+RunResult run(const Scene& asked, const RunOptions& options, Progress& progress) {
   output::create_folder(options.out);
   output::require_writable(options.out);
   output::remove_abandoned(options.out);
   double total = 0;
+  const double processor = cpu_seconds();
   RunResult result;
+  std::optional<Checkpoint> checkpoint;
+  if (options.resume) checkpoint = read_checkpoint(checkpoint_file(options.out), fingerprint(asked));
+  const Scene scene = within_budget(asked, options, checkpoint, progress);
   {
     const Stopwatch watch(total);
-    Run run(scene, options, progress);
+    Run run(scene, options, std::move(checkpoint), progress);
     Simulation& simulation = run.simulation();
     const bool complete = run.finish(progress);
     result.report = simulation.report();
@@ -128,10 +149,10 @@ RunResult run(const Scene& scene, const RunOptions& options, Progress& progress)
   }
   Report& report = result.report;
   report.scene = scene.name;
-  report.quality = name_of(scene.quality);
   report.seed = scene.seed;
   report.threads = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
   report.seconds.total += total;
+  report.seconds.processor += cpu_seconds() - processor;
   report.peak_memory_mb = peak_memory_mb();
   keep_scene(scene.file, options.out);
   output::write_atomically(options.out / "report.json", to_json(report, result.sequence));

@@ -23,6 +23,7 @@ struct SettledSolve {
 struct RunOptions {
   std::filesystem::path out;  ///< folder for the results; created when missing
   int threads = 0;            ///< 0: all
+  bool predict = false;       ///< say in the report what was expected; takes up to Forecaster::most_seconds
   bool resume = false;        ///< go on from the checkpoint in `out`, if there is one
   std::function<void(const SettledSolve&)> on_solve = [](const SettledSolve&) {};  ///< called after every solve
 };

@@ -106,6 +106,7 @@ struct Scene {
   std::uint64_t seed = 1;
   Vec3 gravity = Vec3(0, -9.81, 0);
   Quality quality = Quality::preview;
+  std::optional<double> time_budget;  ///< seconds that a run may take; it chooses the quality when it starts
   std::vector<SceneBody> bodies;
   std::optional<Ground> ground;
   FractureSettings fracture;

@@ -8,8 +8,10 @@
 #include <tbb/global_control.h>
 #include <unistd.h>
 
+#include "core/resources.h"
 #include "output/atomic_file.h"
 #include "pipeline/outputs.h"
+#include "pipeline/prediction.h"
 #include "pipeline/run.h"
 #include "pipeline/simulation.h"
 
@@ -56,9 +58,19 @@ void choose_frames(Scene& scene, const std::string& frames) {
   scene.outputs.last_frame = last;
 }
 
+/// What the command line says wins over the scene's own.
+void choose_quality(Scene& scene, const std::optional<Quality>& quality, const std::optional<double>& time_budget) {
+  if (quality && time_budget)
+    throw Error(ErrorKind::usage, "--time-budget chooses the quality; give it or --quality, not both");
+  if (time_budget) scene.time_budget = time_budget;
+  if (!quality) return;
+  scene.quality = *quality;
+  scene.time_budget.reset();
+}
+
 Scene scene_of(const RunArguments& arguments) {
   Scene scene = load_scene(arguments.scene);
-  if (arguments.quality) scene.quality = *arguments.quality;
+  choose_quality(scene, arguments.quality, arguments.time_budget);
   if (arguments.seed) scene.seed = *arguments.seed;
   choose_frames(scene, arguments.frames);
   return scene;
@@ -169,6 +181,7 @@ int run_command(const RunArguments& arguments, const LogSettings& log) {
   options.out = arguments.out.empty() ? fs::path("out") / scene.name : fs::path(arguments.out);
   options.threads = arguments.threads;
   options.resume = arguments.resume;
+  options.predict = true;
   if (arguments.dry_run) return say_dry_run(scene, options, log);
   if (arguments.resume && is_complete(scene, options.out)) return say_nothing_left(options.out, log);
   options.on_solve = [&](const SettledSolve& solve) {
@@ -184,17 +197,50 @@ int run_command(const RunArguments& arguments, const LogSettings& log) {
   return say_result(run(scene, options, *progress), options.out, log);
 }
 
-int check_command(const std::string& file, const std::optional<Quality>& quality, bool json) {
-  Scene scene = load_scene(file);
-  if (quality) scene.quality = *quality;
-  const RunOptions options;
+namespace {
+
+Json check_json(const Scene& scene, const EffectPlan& plan, const Prediction& prediction) {
+  return {{"quality", name_of(scene.quality)},
+          {"particles", scene.quality.particles},
+          {"accuracy", accuracy_of(scene.quality)},
+          {"prediction",
+           {{"seconds", prediction.seconds},
+            {"processor_seconds", prediction.processor_seconds},
+            {"peak_memory_mb", prediction.memory_mb},
+            {"solves", prediction.solves}}},
+          {"effects", plan_json(plan)}};
+}
+
+void say_prediction(const Scene& scene, const Prediction& p) {
+  std::printf(
+      "a run will take about %.0f s (%.0f s of processor time, %.0f MB); %d fractures of bodies and fragments\n",
+      std::max(1.0, p.seconds), std::max(1.0, p.processor_seconds), p.memory_mb, p.solves);
+  if (scene.time_budget && p.seconds > *scene.time_budget)
+    std::printf("note: no quality fits into %.0f s; this is the coarsest one\n", *scene.time_budget);
+  std::printf("%s\n", accuracy_of(scene.quality).c_str());
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int check_command(const CheckArguments& arguments) {
+  Scene scene = load_scene(arguments.scene);
+  choose_quality(scene, arguments.quality, arguments.time_budget);
+  RunOptions options;
+  options.threads = arguments.threads;
+  SilentProgress progress;
+  if (scene.time_budget) scene.quality = affordable_quality(scene, options, progress);
+  const double start = cpu_seconds();
   Simulation simulation = placed(scene, options);
   const EffectPlan& plan = simulation.effects();
-  if (json) return std::cout << Json{{"effects", plan_json(plan)}}.dump(2) << std::endl, 0;
+  const Forecaster forecaster(scene, simulation, cpu_seconds() - start, Forecaster::most_seconds, progress);
+  const Prediction prediction = forecaster.at(scene.quality, arguments.threads);
+  if (arguments.json) return std::cout << check_json(scene, plan, prediction).dump(2) << std::endl, 0;
   say_bodies(scene, simulation);
   say_plan(plan);
   std::cout << "scene is valid: " << scene.duration << " s at " << scene.frame_rate << " frames/s, quality "
             << name_of(scene.quality) << std::endl;
+  say_prediction(scene, prediction);
   return 0;
 }
 

@@ -13,6 +13,7 @@ namespace sunder::pipeline {
 struct RunArguments {
   std::string scene, out, frames;
   std::optional<Quality> quality;
+  std::optional<double> time_budget;  ///< [s]
   std::optional<std::uint64_t> seed;
   int threads = 0;
   bool resume = false, dry_run = false;
@@ -23,9 +24,17 @@ struct RunArguments {
 /// a folder that cannot be written.
 int run_command(const RunArguments& arguments, const LogSettings& log);
 
-/// Says which effects will run and what repair does to the meshes. Errors: those of load_scene and of placing the
-/// bodies.
-int check_command(const std::string& file, const std::optional<Quality>& quality, bool json);
+struct CheckArguments {
+  std::string scene;
+  std::optional<Quality> quality;
+  std::optional<double> time_budget;  ///< [s]
+  int threads = 0;
+  bool json = false;
+};
+
+/// Says which effects will run, what repair does to the meshes, and what a run will take. Errors: those of load_scene
+/// and of placing the bodies.
+int check_command(const CheckArguments& arguments);
 
 /// One line for the terminal.
 std::string sentence(const FractureRecord& record);

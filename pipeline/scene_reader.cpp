@@ -26,11 +26,23 @@ void read_quality(const Value& value, Scene& scene) {
   scene.quality = value.word<Quality>(kQualities);
 }
 
+/// Seconds, or text such as "90 s", "5 min", "2 h".
+void read_time_budget(const Value& value, Scene& scene) {
+  if (!value.is_text()) {
+    scene.time_budget = value.positive();
+    return;
+  }
+  const auto seconds = duration_of(value.text());
+  if (!seconds)
+    value.fail("expected seconds, or a text such as \"90 s\", \"5 min\" or \"2 h\", found \"" + value.text() + "\"");
+  scene.time_budget = *seconds;
+}
+
 void read_seed(const Value& value, Scene& scene) {
   scene.seed = static_cast<std::uint64_t>(value.integer(0, std::numeric_limits<std::int64_t>::max()));
 }
 
-constexpr std::array<Key<Scene>, 6> kSceneKeys = {{
+constexpr std::array<Key<Scene>, 7> kSceneKeys = {{
     {"duration", [](const Value& value, Scene& scene) { scene.duration = value.positive(); }},
     {"frame_rate", [](const Value& value, Scene& scene) { scene.frame_rate = value.positive(); }},
     {"start_frame", [](const Value& value,
@@ -38,6 +50,7 @@ constexpr std::array<Key<Scene>, 6> kSceneKeys = {{
     {"seed", read_seed},
     {"gravity", [](const Value& value, Scene& scene) { scene.gravity = value.vector(); }},
     {"quality", read_quality},
+    {"time_budget", read_time_budget},
 }};
 
 struct GroundDraft {
@@ -243,6 +256,14 @@ void check_volumes(const std::filesystem::path& file, const toml::table& documen
     section.fail_at("nearly_whole_volume", "nearly_whole_volume: has to be at least small_volume");
 }
 
+void check_budget(const std::filesystem::path& file, const toml::table& document) {
+  const toml::table* table = find_table(file, document, "scene");
+  if (!table) return;
+  const Section section{file, *table, "[scene]"};
+  if (section.has("time_budget") && section.has("quality"))
+    section.fail_at("time_budget", "time_budget: chooses the quality; leave out quality, or time_budget");
+}
+
 void check_frame_count(const std::filesystem::path& file, const toml::table& document, const Scene& scene) {
   constexpr double kMaximumFrames = 1e6;  // more is a slip of the pen, and would fill any disk
   if (scene.duration * scene.frame_rate <= kMaximumFrames) return;
@@ -290,6 +311,7 @@ Scene load_scene(const std::filesystem::path& file, const AssetPaths& assets) {
   scene.name = file.stem().string();
   read_optional<Scene>(file, document, "scene", kSceneKeys, scene);
   check_frame_count(file, document, scene);
+  check_budget(file, document);
   const Names names{.mesh_cache = assets.mesh_cache,
                     .meshes = load_catalogue(assets.meshes),
                     .materials = read_materials(file, document, load_materials(assets.materials))};

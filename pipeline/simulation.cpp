@@ -316,6 +316,42 @@ void Simulation::step(Progress& progress) {
   }
 }
 
+/// Of two bodies that hit each other one comes first; in a run the other one follows in the repeated step.
+std::vector<RehearsedHit> Simulation::rehearse_step() {
+  drive_bodies();
+  const double now = world_.time();
+  const std::vector<rigid::Impact> impacts = step_world();
+  std::vector<RehearsedHit> rehearsed;
+  if (!effects_.runs(Effect::fracture)) return rehearsed;
+  for (auto hits = breaking_hits(impacts, now); !hits.empty(); hits = breaking_hits(impacts, now))
+    for (const Hit& hit : hits) {
+      Live& live = state_.live.at(hit.body);
+      std::vector<rigid::BodyId> partners;
+      rehearsed.push_back({piece_of(live).name, now, hit.severity, fracture_input(hit, rehearsed.size(), partners)});
+      live.last_solve = std::numeric_limits<double>::infinity();
+    }
+  return rehearsed;
+}
+
+std::vector<RehearsedHit> Simulation::rehearse(int most_hits, Progress& progress) {
+  const auto before = world_.snapshot();
+  const auto live = state_.live;
+  const MotionRecord motion = state_.report.motion;
+  const double rigid_seconds = state_.report.seconds.rigid;
+  const long steps = static_cast<long>(last_frame(scene_) - scene_.start_frame) * steps_per_frame_;
+  std::vector<RehearsedHit> hits;
+  for (long done = 0; done < steps && static_cast<int>(hits.size()) < most_hits; ++done) {
+    progress.checkpoint("rehearsal", static_cast<double>(done) / static_cast<double>(steps));
+    for (RehearsedHit& hit : rehearse_step()) hits.push_back(std::move(hit));
+  }
+  world_.restore(before);
+  state_.live = live;
+  state_.report.motion = motion;
+  state_.report.seconds.rigid = rigid_seconds;
+  if (static_cast<int>(hits.size()) > most_hits) hits.resize(static_cast<std::size_t>(most_hits));
+  return hits;
+}
+
 void Simulation::note_speed(const output::Piece& piece, double speed) {
   MotionRecord& motion = state_.report.motion;
   if (piece.generation == 0 && world_.time() == 0) motion.fastest_start = std::max(motion.fastest_start, speed);

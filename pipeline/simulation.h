@@ -25,6 +25,14 @@ struct Live {
   std::shared_ptr<const Particles> particles = nullptr;  ///< of its last solve, in the piece's frame
 };
 
+/// The hit that would first break a body.
+struct RehearsedHit {
+  std::string body;
+  double time = 0;      ///< [s]
+  double severity = 0;  ///< impulse over the least one that could open a crack through the body
+  FractureInput input;
+};
+
 /// What a simulation has made of its scene so far, beside the world: together they are all of its state.
 struct SimulationState {
   output::Sequence sequence;
@@ -47,6 +55,9 @@ class Simulation {
   /// Advances the world by one step; bodies that were hit hard enough break within it. After ErrorKind::interrupted the
   /// step can be taken again, to the same result.
   void step(Progress& progress);
+  /// Goes on without breaking anything until that many bodies were hit so that they would break, or to the end of the
+  /// scene, and leaves the simulation as it was.
+  std::vector<RehearsedHit> rehearse(int most_hits, Progress& progress);
   /// Adds the present poses to the sequence.
   void record_frame();
 
@@ -73,6 +84,7 @@ class Simulation {
   void plan_effects_of_bodies();
   void note_speed(const output::Piece& piece, double speed);
   std::vector<rigid::Impact> step_world();
+  std::vector<RehearsedHit> rehearse_step();
   void require_no_overlap() const;
   rigid::BodyId add_body(const output::Piece& piece, const Live& live, Hulls hulls, const Pose& pose,
                          const Twist& twist, int family);

@@ -197,7 +197,7 @@ void serialize(Archive& archive, RepairRecord& repair) {
 
 template <class Archive>
 void serialize(Archive& archive, Report::Seconds& s) {
-  archive(s.total, s.setup, s.rigid, s.sample, s.solve, s.extract, s.cut, s.write, s.checkpoint);
+  archive(s.total, s.processor, s.setup, s.rigid, s.sample, s.solve, s.extract, s.cut, s.write, s.checkpoint);
 }
 
 template <class Archive>
@@ -205,10 +205,15 @@ void serialize(Archive& archive, MotionRecord& m) {
   archive(m.work, m.fastest_start, m.fastest_fragment, m.fastest_name, m.fastest_time);
 }
 
+template <class Archive>
+void serialize(Archive& archive, Prediction& p) {
+  archive(p.processor_seconds, p.seconds, p.memory_mb, p.solves);
+}
+
 /// Only what a simulation has written by then; the rest is added when the run ends.
 template <class Archive>
 void serialize(Archive& archive, Report& r) {
-  archive(r.fractures, r.repairs, r.motion, r.particle_steps, r.seconds, r.fallbacks, r.notes);
+  archive(r.quality, r.prediction, r.fractures, r.repairs, r.motion, r.particle_steps, r.seconds, r.fallbacks, r.notes);
 }
 
 template <class Archive>

@@ -1,0 +1,160 @@
+#include "pipeline/prediction.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <thread>
+
+#include "core/resources.h"
+#include "geometry/primitives.h"
+
+namespace sunder::pipeline {
+namespace {
+
+// Fitted on the scenes of assets/scenes at draft and preview quality: processor seconds of the machine of
+// docs/accuracy.md while nothing else ran on it.
+namespace fitted {
+constexpr double particle_step = 8e-8;   ///< [s]
+constexpr double particle_break = 4e-5;  ///< of sampling, crack surfaces and cut, per particle [s]
+constexpr double cubic = 1.9;            ///< over quadratic splines
+constexpr double two_fields = 1.4;       ///< over one
+constexpr double finer_pieces = 1.5;     ///< pieces of any quality over those of the pilot
+constexpr double start = 1;              ///< of the program, the tables and the page [s]
+constexpr double poster = 3;             ///< [s]
+constexpr double face_frame = 7e-7;      ///< of a face in a frame of the OBJ sequence [s]
+constexpr double serial_share = 0.2;     ///< of the processor time: one thread only
+constexpr double program_mb = 110;
+constexpr double particle_mb = 2.5e-3;  ///< of a solve
+constexpr double face_mb = 5e-4;
+}  // namespace fitted
+
+/// The machine that the constants are of took so long for the solve below [s].
+constexpr double reference_seconds = 0.065;
+
+const Quality pilot_quality = Quality::of(1500);
+
+FractureInput probe() {
+  FractureInput input;
+  input.mesh = geometry::box(Vec3::Constant(0.1));
+  input.material = {"probe", 2500, 70e9, 0.22, 1e12, 1e6, 1e12, 0, 0.4, 0.4, true, ""};
+  mpm::Load load;
+  load.point = Vec3(0, 0.05, 0);
+  load.approach_speed = 1;
+  load.pair = {0.01, mpm::effective_modulus(70e9, 0.22, 210e9, 0.3)};
+  input.loads = {load};
+  input.partners = {{0.03}};
+  input.particles = 8000;
+  input.solve.most_steps = 150;
+  return input;
+}
+
+int threads_of(int asked) { return asked > 0 ? asked : static_cast<int>(std::thread::hardware_concurrency()); }
+
+Scene at_pilot_quality(Scene scene) {
+  scene.quality = pilot_quality;
+  return scene;
+}
+
+/// What a value that was followed over `steps.size()` of `all` steps comes to in the end, if what is left goes on as
+/// the last fifth of what was followed did.
+double extrapolated(const std::vector<double>& steps, long all) {
+  const double sum = std::accumulate(steps.begin(), steps.end(), 0.0);
+  const long done = static_cast<long>(steps.size()), last = std::max(1L, done / 5);
+  if (done >= all || done == 0) return sum;
+  const double rate = std::accumulate(steps.end() - last, steps.end(), 0.0) / static_cast<double>(last);
+  return sum + rate * static_cast<double>(all - done);
+}
+
+}  // namespace
+
+double measured_slowness() {
+  SilentProgress progress;
+  double best = std::numeric_limits<double>::infinity();
+  for (int n = 0; n < 2; ++n) {
+    const double start = cpu_seconds();
+    fracture(probe(), progress);
+    best = std::min(best, cpu_seconds() - start);
+  }
+  return best / reference_seconds;
+}
+
+Forecaster::Forecaster(const Scene& scene, const Simulation& simulation, double setup_seconds, double pilot_seconds,
+                       Progress& progress)
+    : scene_(scene), setup_seconds_(setup_seconds), slowness_(measured_slowness()) {
+  const Scene coarse = at_pilot_quality(scene);
+  const RunOptions options;
+  Simulation pilot(coarse, options, simulation.world_state(), simulation.state());
+  const long steps = static_cast<long>(last_frame(scene) - scene.start_frame) * pilot.steps_per_frame();
+  const auto& fractures = pilot.report().fractures;
+  std::vector<double> rigid, particles, particle_steps;
+  for (double spent = 0; static_cast<long>(rigid.size()) < steps && spent < pilot_seconds;) {
+    progress.checkpoint("forecast", static_cast<double>(rigid.size()) / static_cast<double>(steps));
+    const std::size_t solved = fractures.size();
+    const double start = cpu_seconds();
+    pilot.step(progress);
+    const double seconds = cpu_seconds() - start;
+    spent += seconds;
+    // A step that breaks something is repeated; what it takes without the solves is that of the step before.
+    rigid.push_back(fractures.size() == solved ? seconds : rigid.empty() ? 0 : rigid.back());
+    particles.push_back(0);
+    particle_steps.push_back(0);
+    for (std::size_t n = solved; n < fractures.size(); ++n) {
+      particles.back() += static_cast<double>(fractures[n].particles);
+      particle_steps.back() += static_cast<double>(fractures[n].particles * fractures[n].steps);
+    }
+  }
+  rigid_seconds_ = extrapolated(rigid, steps);
+  particles_ = extrapolated(particles, steps);
+  particle_steps_ = extrapolated(particle_steps, steps);
+  solves_ = static_cast<int>(fractures.size());
+  for (const output::Piece& piece : pilot.sequence().pieces)
+    if (std::isinf(piece.death_time)) faces_ += static_cast<double>(piece.mesh.faces.size());
+}
+
+/// A solve of r times the particles has steps that are r^(1/3) times as short.
+double Forecaster::solve_seconds(const Quality& quality) const {
+  const double finer = static_cast<double>(quality.particles) / pilot_quality.particles;
+  double step = fitted::particle_step;
+  if (scene_.fracture.spline == mpm::Spline::cubic) step *= fitted::cubic;
+  const Ask sides = scene_.effects.asked[Effect::two_velocity_fields];
+  if (sides == Ask::on || (sides == Ask::automatic && quality.particles >= Quality::final.particles))
+    step *= fitted::two_fields;
+  return finer * (std::cbrt(finer) * particle_steps_ * step + particles_ * fitted::particle_break);
+}
+
+double Forecaster::write_seconds() const {
+  const int frames = last_frame(scene_) - scene_.start_frame + 1;
+  return (scene_.outputs.poster ? fitted::poster : 0) + (scene_.outputs.obj ? fitted::face_frame * faces_ * frames : 0);
+}
+
+Prediction Forecaster::at(const Quality& quality, int threads) const {
+  Prediction p;
+  p.solves = solves_;
+  const double pieces = solves_ > 0 ? fitted::finer_pieces : 1;
+  const double rigid = rigid_seconds_ * pieces * quality.rigid_rate / pilot_quality.rigid_rate;
+  p.processor_seconds =
+      slowness_ * (fitted::start + solve_seconds(quality) + write_seconds() * pieces) + setup_seconds_ + rigid;
+  p.seconds = p.processor_seconds * (fitted::serial_share + (1 - fitted::serial_share) / threads_of(threads));
+  p.memory_mb =
+      fitted::program_mb + fitted::face_mb * faces_ + (solves_ > 0 ? fitted::particle_mb * quality.particles : 0);
+  return p;
+}
+
+Quality Forecaster::within(double seconds, int threads) const {
+  Quality best = Quality::of(Quality::least_particles);
+  for (double particles = Quality::least_particles; particles <= Quality::most_particles; particles *= 1.2) {
+    const Quality quality = Quality::of(static_cast<int>(particles));
+    if (at(quality, threads).seconds > seconds) break;
+    best = quality;
+  }
+  return best;
+}
+
+Quality affordable_quality(const Scene& scene, const RunOptions& options, Progress& progress) {
+  const double start = cpu_seconds();
+  const Simulation simulation(scene, options, progress);
+  return Forecaster(scene, simulation, cpu_seconds() - start, Forecaster::most_seconds, progress)
+      .within(*scene.time_budget, options.threads);
+}
+
+}  // namespace sunder::pipeline
