@@ -18,7 +18,7 @@ class Forecaster {
  public:
   /// Seconds of processor time that a pilot may take, and where it comes before a run; what is left of the scene then
   /// is taken to go on as at its end.
-  static constexpr double most_seconds = 4, brief_seconds = 1;
+  static constexpr double most_seconds = 4, brief_seconds = 1.5;
 
   /// `simulation` has placed the bodies, which took `setup_seconds` of processor time; it is left as it is. Errors:
   /// ErrorKind::interrupted.
@@ -30,6 +30,7 @@ class Forecaster {
   /// The finest quality that is predicted to take at most `seconds`, in steps of a fifth so that the same machine
   /// chooses the same one again; the coarsest one when nothing fits.
   Quality within(double seconds, int threads) const;
+  double slowness() const { return slowness_; }  ///< measured_slowness() when it was made
 
  private:
   double solve_seconds(const Quality& quality) const;

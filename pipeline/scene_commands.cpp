@@ -199,7 +199,7 @@ int run_command(const RunArguments& arguments, const LogSettings& log) {
 
 namespace {
 
-Json check_json(const Scene& scene, const EffectPlan& plan, const Prediction& prediction) {
+Json check_json(const Scene& scene, const EffectPlan& plan, const Prediction& prediction, double slowness) {
   return {{"quality", name_of(scene.quality)},
           {"particles", scene.quality.particles},
           {"accuracy", accuracy_of(scene.quality)},
@@ -207,7 +207,8 @@ Json check_json(const Scene& scene, const EffectPlan& plan, const Prediction& pr
            {{"seconds", prediction.seconds},
             {"processor_seconds", prediction.processor_seconds},
             {"peak_memory_mb", prediction.memory_mb},
-            {"solves", prediction.solves}}},
+            {"solves", prediction.solves},
+            {"slowness", slowness}}},
           {"effects", plan_json(plan)}};
 }
 
@@ -235,7 +236,8 @@ int check_command(const CheckArguments& arguments) {
   const EffectPlan& plan = simulation.effects();
   const Forecaster forecaster(scene, simulation, cpu_seconds() - start, Forecaster::most_seconds, progress);
   const Prediction prediction = forecaster.at(scene.quality, arguments.threads);
-  if (arguments.json) return std::cout << check_json(scene, plan, prediction).dump(2) << std::endl, 0;
+  if (arguments.json)
+    return std::cout << check_json(scene, plan, prediction, forecaster.slowness()).dump(2) << std::endl, 0;
   say_bodies(scene, simulation);
   say_plan(plan);
   std::cout << "scene is valid: " << scene.duration << " s at " << scene.frame_rate << " frames/s, quality "

@@ -71,7 +71,7 @@ std::map<std::string, std::string> results(const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder))
     files[entry.path().filename()] = output::read_all(entry.path());
   auto report = nlohmann::json::parse(files.at("report.json"));
-  for (const char* key : {"seconds", "peak_memory_mb", "threads"}) report.erase(key);
+  for (const char* key : {"seconds", "peak_memory_mb", "threads", "prediction"}) report.erase(key);
   report["mpm"].erase("particle_steps_per_second");
   for (auto& fracture : report["fractures"]) fracture.erase("seconds");
   for (auto& effect : report["effects"]) effect.erase("seconds");
