@@ -232,6 +232,8 @@ int dispatch(int argc, char** argv, LogSettings& log) {
   auto* validate_app = app.add_subcommand(
       "validate", "Run the catalogue of validation problems; exit code 0 when every check holds, 1 when one fails");
   validate_app->add_option("--only", validate_options.only, "Ids of the problems to run (default: all)");
+  validate_app->add_flag("--hard", validate_options.hard,
+                         "The hard cases instead: extreme sizes, speeds, materials, meshes and scenes");
   validate_app
       ->add_option("--resolution", validate_options.resolutions,
                    "Resolutions at which the problem named by --only is studied: 16,32,64")

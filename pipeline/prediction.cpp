@@ -25,9 +25,9 @@ constexpr double start = 1;              ///< of the program, the tables and the
 constexpr double poster = 3;             ///< [s]
 constexpr double face_frame = 2e-7;      ///< of a face in a frame of the OBJ sequence [s]
 constexpr double serial_share = 0.2;     ///< of the processor time: one thread only
-constexpr double program_mb = 110;
+constexpr double program_mb = 125;
 constexpr double particle_mb = 2.5e-3;  ///< of a solve
-constexpr double face_mb = 5e-4;
+constexpr double face_mb = 3e-4;
 }  // namespace fitted
 
 /// The machine that the constants are of took so long for the solve below [s].
@@ -81,40 +81,52 @@ double measured_slowness() {
   return best / reference_seconds;
 }
 
-Forecaster::Forecaster(const Scene& scene, const Simulation& simulation, double setup_seconds, double pilot_seconds,
+Forecaster::Forecaster(const Scene& scene, const Simulation& simulation, double setup_seconds, double share,
                        Progress& progress)
     : scene_(scene), setup_seconds_(setup_seconds), slowness_(measured_slowness()) {
   const Scene coarse = at_pilot_quality(scene);
   const RunOptions options;
   Simulation pilot(coarse, options, simulation.world_state(), simulation.state());
   const long steps = static_cast<long>(last_frame(scene) - scene.start_frame) * pilot.steps_per_frame();
-  const auto& fractures = pilot.report().fractures;
-  std::vector<double> rigid, particles, particle_steps;
-  for (double spent = 0; static_cast<long>(rigid.size()) < steps && spent < pilot_seconds;) {
-    progress.checkpoint("forecast", static_cast<double>(rigid.size()) / static_cast<double>(steps));
-    const std::size_t solved = fractures.size();
-    const double start = cpu_seconds();
-    pilot.step(progress);
-    const double seconds = cpu_seconds() - start;
-    spent += seconds;
-    // A step that breaks something is repeated; what it takes without the solves is that of the step before.
-    rigid.push_back(fractures.size() == solved ? seconds : rigid.empty() ? 0 : rigid.back());
-    particles.push_back(0);
-    particle_steps.push_back(0);
-    for (std::size_t n = solved; n < fractures.size(); ++n) {
-      particles.back() += static_cast<double>(fractures[n].particles);
-      particle_steps.back() += static_cast<double>(fractures[n].particles * fractures[n].steps);
-    }
+  double spent = 0, affordable = most_seconds;
+  while (static_cast<long>(rigid_.size()) < steps && spent < affordable) {
+    progress.checkpoint("forecast", static_cast<double>(rigid_.size()) / static_cast<double>(steps));
+    spent += follow(pilot, progress);
+    affordable = std::min(most_seconds, share * at(scene.quality, 1).processor_seconds);
   }
-  rigid_seconds_ = extrapolated(rigid, steps);
-  // Most bodies break early: solves go on at the mean of the pilot, and at most as many again.
-  const double rest =
-      std::min(2.0, static_cast<double>(steps) / std::max<double>(1, static_cast<double>(rigid.size())));
-  particles_ = rest * std::accumulate(particles.begin(), particles.end(), 0.0);
-  particle_steps_ = rest * std::accumulate(particle_steps.begin(), particle_steps.end(), 0.0);
+  sum_up(pilot, steps);
+}
+
+/// One step of the pilot; returns its processor time [s].
+double Forecaster::follow(Simulation& pilot, Progress& progress) {
+  const auto& fractures = pilot.report().fractures;
+  const std::size_t solved = fractures.size();
+  const double start = cpu_seconds();
+  pilot.step(progress);
+  const double seconds = cpu_seconds() - start;
+  // A step that breaks something is repeated; what it takes without the solves is that of the step before.
+  rigid_.push_back(fractures.size() == solved ? seconds : rigid_.empty() ? 0 : rigid_.back());
+  for (std::size_t n = solved; n < fractures.size(); ++n) {
+    particles_ += static_cast<double>(fractures[n].particles);
+    particle_steps_ += static_cast<double>(fractures[n].particles * fractures[n].steps);
+  }
   solves_ = static_cast<int>(fractures.size());
-  for (const output::Piece& piece : pilot.sequence().pieces)
-    if (std::isinf(piece.death_time)) faces_ += static_cast<double>(piece.mesh.faces.size());
+  return seconds;
+}
+
+/// From the pilot to the whole scene: most bodies break early, so solves go on at the mean of the pilot, and at most
+/// half as many again.
+void Forecaster::sum_up(Simulation& pilot, long steps) {
+  rigid_seconds_ = extrapolated(rigid_, steps);
+  const double rest =
+      std::min(1.5, static_cast<double>(steps) / std::max<double>(1, static_cast<double>(rigid_.size())));
+  particles_ *= rest;
+  particle_steps_ *= rest;
+  for (const output::Piece& piece : pilot.sequence().pieces) {
+    const double faces = static_cast<double>(piece.mesh.faces.size());
+    all_faces_ += faces;
+    if (std::isinf(piece.death_time)) faces_ += faces;
+  }
 }
 
 /// A solve of r times the particles has steps that are r^(1/3) times as short.
@@ -141,7 +153,7 @@ Prediction Forecaster::at(const Quality& quality, int threads) const {
   p.processor_seconds = slowness_ * (fitted::start + solve_seconds(quality) + write_seconds()) + setup_seconds_ + rigid;
   p.seconds = p.processor_seconds * (fitted::serial_share + (1 - fitted::serial_share) / threads_of(threads));
   p.memory_mb =
-      fitted::program_mb + fitted::face_mb * faces_ + (solves_ > 0 ? fitted::particle_mb * quality.particles : 0);
+      fitted::program_mb + fitted::face_mb * all_faces_ + (solves_ > 0 ? fitted::particle_mb * quality.particles : 0);
   return p;
 }
 
@@ -158,7 +170,7 @@ Quality Forecaster::within(double seconds, int threads) const {
 Quality affordable_quality(const Scene& scene, const RunOptions& options, Progress& progress) {
   const double start = cpu_seconds();
   const Simulation simulation(scene, options, progress);
-  return Forecaster(scene, simulation, cpu_seconds() - start, Forecaster::most_seconds, progress)
+  return Forecaster(scene, simulation, cpu_seconds() - start, Forecaster::whole, progress)
       .within(*scene.time_budget, options.threads);
 }
 

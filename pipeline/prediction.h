@@ -16,14 +16,14 @@ double measured_slowness();
 /// quality follows from laws fitted on the scenes of assets/scenes.
 class Forecaster {
  public:
-  /// Seconds of processor time that a pilot may take, and where it comes before a run; what is left of the scene then
-  /// is taken to go on as at its end.
-  static constexpr double most_seconds = 4, brief_seconds = 1.5;
+  /// Seconds of processor time that a pilot may take; what is left of the scene then is taken to go on as at its end.
+  static constexpr double most_seconds = 4;
+  /// Shares of what a run is predicted to take, which a pilot may take too: any, and what is little beside a run.
+  static constexpr double whole = 1e9, little = 0.08;
 
   /// `simulation` has placed the bodies, which took `setup_seconds` of processor time; it is left as it is. Errors:
   /// ErrorKind::interrupted.
-  Forecaster(const Scene& scene, const Simulation& simulation, double setup_seconds, double pilot_seconds,
-             Progress& progress);
+  Forecaster(const Scene& scene, const Simulation& simulation, double setup_seconds, double share, Progress& progress);
 
   /// With `threads` (0: all). Within a factor of two of what the scenes in assets/scenes take.
   Prediction at(const Quality& quality, int threads) const;
@@ -33,15 +33,18 @@ class Forecaster {
   double slowness() const { return slowness_; }  ///< measured_slowness() when it was made
 
  private:
+  double follow(Simulation& pilot, Progress& progress);
+  void sum_up(Simulation& pilot, long steps);
   double solve_seconds(const Quality& quality) const;
   double write_seconds() const;
 
   const Scene& scene_;
   double setup_seconds_, slowness_;
+  std::vector<double> rigid_;  ///< of the steps of the pilot [s]
   // Of the whole scene at the pilot's quality.
   double rigid_seconds_ = 0;
   double particles_ = 0, particle_steps_ = 0;  ///< of all solves
-  double faces_ = 0;                           ///< of the pieces at the end
+  double faces_ = 0, all_faces_ = 0;           ///< of the pieces at the end, and of all that there ever were
   int solves_ = 0;
 };
 

@@ -53,7 +53,7 @@ class Run {
       Report& report = simulation_->report();
       report.quality = name_of(scene.quality);
       if (options.predict)
-        report.prediction = Forecaster(scene, *simulation_, cpu_seconds() - start, Forecaster::brief_seconds, progress)
+        report.prediction = Forecaster(scene, *simulation_, cpu_seconds() - start, Forecaster::little, progress)
                                 .at(scene.quality, options.threads);
       record();
     }

@@ -234,7 +234,7 @@ int check_command(const CheckArguments& arguments) {
   const double start = cpu_seconds();
   Simulation simulation = placed(scene, options);
   const EffectPlan& plan = simulation.effects();
-  const Forecaster forecaster(scene, simulation, cpu_seconds() - start, Forecaster::most_seconds, progress);
+  const Forecaster forecaster(scene, simulation, cpu_seconds() - start, Forecaster::whole, progress);
   const Prediction prediction = forecaster.at(scene.quality, arguments.threads);
   if (arguments.json)
     return std::cout << check_json(scene, plan, prediction, forecaster.slowness()).dump(2) << std::endl, 0;

@@ -10,6 +10,7 @@
 #include "core/stopwatch.h"
 #include "output/atomic_file.h"
 #include "pipeline/detail/validation_report.h"
+#include "pipeline/hard_cases.h"
 
 namespace sunder::pipeline {
 namespace {
@@ -20,12 +21,13 @@ using validation::Problem;
 
 /// In the order of the catalogue, each once.
 std::vector<Problem> chosen(const ValidateOptions& options) {
-  const auto& all = validation::problems();
+  const auto& all = options.hard ? hard_cases() : validation::problems();
   for (const std::string& id : options.only) {
     if (std::any_of(all.begin(), all.end(), [&](const Problem& p) { return p.id == id; })) continue;
     std::string known;
     for (const Problem& p : all) known += (known.empty() ? "" : ", ") + p.id;
-    throw Error(ErrorKind::usage, "there is no validation problem '" + id + "'; known: " + known);
+    throw Error(ErrorKind::usage, std::string("there is no ") + (options.hard ? "hard case" : "validation problem") +
+                                      " '" + id + "'; known: " + known);
   }
   std::vector<Problem> list;
   std::copy_if(all.begin(), all.end(), std::back_inserter(list), [&](const Problem& p) {
@@ -83,7 +85,9 @@ void print(const ProblemResult& result) {
 
 void write(const std::vector<ProblemResult>& results, const ValidateOptions& options) {
   if (!options.json.empty()) output::write_atomically(options.json, detail::validation_json(results).dump(2) + "\n");
-  if (!options.html.empty()) output::write_atomically(options.html, detail::validation_page(results));
+  if (!options.html.empty())
+    output::write_atomically(
+        options.html, detail::validation_page(options.hard ? "Hard cases of Sunder" : "Validation of Sunder", results));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-/// Runs the catalogue of validation problems for a user.
+/// Runs the catalogue of validation problems, or the hard cases, for a user.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -9,6 +9,7 @@
 namespace sunder::pipeline {
 
 struct ValidateOptions {
+  bool hard = false;              ///< the hard cases (pipeline/hard_cases.h) instead of the catalogue
   std::vector<std::string> only;  ///< ids; none: all
   std::vector<int> resolutions;   ///< of the studies, instead of their own; needs `only`
   std::filesystem::path json;     ///< file for the results; empty: none

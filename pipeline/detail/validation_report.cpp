@@ -158,11 +158,11 @@ Json validation_json(const std::vector<ProblemResult>& results) {
   return {{"machine", machine_json()}, {"problems", problems}};
 }
 
-std::string validation_page(const std::vector<ProblemResult>& results) {
+std::string validation_page(const std::string& title, const std::vector<ProblemResult>& results) {
   const auto failed = std::count_if(results.begin(), results.end(), [](const auto& r) { return !r.passed(); });
-  std::string body = formatted("<p>%zu problems with references that are not Sunder's own, %ld of them failed.</p>\n",
-                               results.size(), static_cast<long>(failed));
-  body += svg(overview_chart(results));
+  std::string body = formatted("<p>%zu problems, %ld of them failed.</p>\n", results.size(), static_cast<long>(failed));
+  const bool studied = std::any_of(results.begin(), results.end(), [](const auto& r) { return r.study.has_value(); });
+  if (studied) body += svg(overview_chart(results));
   body +=
       "<table><tr><th>problem</th><th></th><th>tightest check</th><th class=\"n\">error</th><th "
       "class=\"n\">bound</th><th class=\"n\">seconds</th><th>verdict</th></tr>\n";
@@ -175,7 +175,7 @@ std::string validation_page(const std::vector<ProblemResult>& results) {
   }
   body += "</table>\n";
   for (const ProblemResult& r : results) body += problem_section(r);
-  return measured_page("Validation of Sunder", body);
+  return measured_page(title, body);
 }
 
 }  // namespace sunder::pipeline::detail

@@ -25,7 +25,7 @@ struct ProblemResult {
 nlohmann::ordered_json validation_json(const std::vector<ProblemResult>& results);
 
 /// HTML in one file, without scripts.
-std::string validation_page(const std::vector<ProblemResult>& results);
+std::string validation_page(const std::string& title, const std::vector<ProblemResult>& results);
 
 /// "to halve the error costs 2.1 times the time"; empty where no order is expected.
 std::string cost_sentence(const validation::Study& study, const validation::StudyResult& result);

@@ -57,6 +57,7 @@ class Dynamics {
   void apply(const Prepared& p, const Step& step);
   void move_to_hits(const Step& step);
   void solve(const Step& step);
+  void run_solver(const std::vector<Body*>& awake, double length);
   void harvest(const Step& step);
 
   Vec3 gravity_;
