@@ -9,7 +9,7 @@
 #include "crack/detail/relief.h"
 #include "crack/detail/sheets.h"
 #include "crack/detail/surface_field.h"
-#include "crack/detail/time_field.h"
+#include "crack/time_field.h"
 
 namespace sunder::crack {
 

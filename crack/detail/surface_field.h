@@ -4,7 +4,7 @@
 
 #include "crack/detail/sheet_grid.h"
 #include "crack/detail/sheets.h"
-#include "crack/detail/time_field.h"
+#include "crack/time_field.h"
 
 namespace sunder::crack::detail {
 

@@ -1,5 +1,5 @@
 /// The damage-time field and its gradient (validation problem C8).
-#include "crack/detail/time_field.h"
+#include "crack/time_field.h"
 
 #include <cmath>
 #include <numbers>
@@ -8,7 +8,7 @@
 
 #include "core/random.h"
 
-namespace sunder::crack::detail {
+namespace sunder::crack {
 namespace {
 
 constexpr double h = 0.1;
@@ -119,4 +119,4 @@ TEST(TimeField, KnowsNothingBesideALineOfPoints) {
 }
 
 }  // namespace
-}  // namespace sunder::crack::detail
+}  // namespace sunder::crack

@@ -1,11 +1,11 @@
 #include <gtest/gtest.h>
 
-#include "tests/rigid/bodies.h"
+#include "validation/moving_bodies.h"
 
 namespace sunder::rigid {
 namespace {
 
-using namespace test;
+using namespace setup;
 
 // A cube of edge `edge` cut into n^3 boxes whose hulls bulge by `bulge` of their edge.
 std::vector<BodySetup> cut_cube(double edge, int n, double bulge, const Vec3& centre, int family = 1) {

@@ -1,11 +1,11 @@
 #include <gtest/gtest.h>
 
-#include "tests/rigid/bodies.h"
+#include "validation/moving_bodies.h"
 
 namespace sunder::rigid {
 namespace {
 
-using namespace test;
+using namespace setup;
 
 constexpr double rounding = 1e-12;
 

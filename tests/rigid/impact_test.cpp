@@ -1,11 +1,11 @@
 #include <gtest/gtest.h>
 
-#include "tests/rigid/bodies.h"
+#include "validation/moving_bodies.h"
 
 namespace sunder::rigid {
 namespace {
 
-using namespace test;
+using namespace setup;
 
 BodySetup bouncy_ball(double radius, const Vec3& position, const Vec3& velocity) {
   BodySetup setup = ball(radius, position);

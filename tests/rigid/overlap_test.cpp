@@ -3,12 +3,12 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "tests/rigid/bodies.h"
+#include "validation/moving_bodies.h"
 
 namespace sunder::rigid {
 namespace {
 
-using namespace test;
+using namespace setup;
 
 // Depth of the contact search against the separating axis theorem in its plainest form: for convex bodies the depth is
 // the least overlap over all face normals and all cross products of edges. With every pair of points taken for an edge

@@ -7,12 +7,12 @@
 #include <tbb/global_control.h>
 
 #include "core/error.h"
-#include "tests/rigid/bodies.h"
+#include "validation/moving_bodies.h"
 
 namespace sunder::rigid {
 namespace {
 
-using namespace test;
+using namespace setup;
 
 World pile(int count) {
   World world(on_ground());

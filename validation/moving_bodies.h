@@ -1,5 +1,5 @@
 #pragma once
-/// Bodies with closed-form mass properties for the tests of `rigid`.
+/// Bodies with closed-form mass properties, and worlds for them: set-ups of the catalogue and of the tests of `rigid`.
 #include <cmath>
 #include <cstring>
 #include <numbers>
@@ -8,7 +8,7 @@
 #include "core/random.h"
 #include "rigid/world.h"
 
-namespace sunder::rigid::test {
+namespace sunder::rigid::setup {
 
 /// Corners alone: collision hulls need no faces.
 inline geometry::TriangleMesh corners_of_box(const Vec3& half, const Vec3& centre = Vec3::Zero()) {
@@ -135,4 +135,4 @@ inline Quat random_turn(std::uint64_t stream, std::uint64_t index) {
               std::sqrt(u) * std::sin(b));
 }
 
-}  // namespace sunder::rigid::test
+}  // namespace sunder::rigid::setup

@@ -1,11 +1,15 @@
 #pragma once
 /// The time of damage as a field, and its gradient: the direction in which a crack ran.
+#include <memory>
 #include <optional>
 #include <vector>
 
-#include "crack/detail/index_table.h"
+#include "core/types.h"
 
-namespace sunder::crack::detail {
+namespace sunder::crack {
+namespace detail {
+class IndexTable;
+}
 
 class TimeField {
  public:
@@ -35,8 +39,8 @@ class TimeField {
   };
 
   double spacing_;
-  IndexTable index_;
+  std::shared_ptr<const detail::IndexTable> index_;
   std::vector<Node> nodes_;
 };
 
-}  // namespace sunder::crack::detail
+}  // namespace sunder::crack

@@ -1,11 +1,15 @@
-#include "crack/detail/time_field.h"
+#include "crack/time_field.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include "crack/detail/index_table.h"
 #include "crack/detail/spline_stencil.h"
 
-namespace sunder::crack::detail {
+namespace sunder::crack {
+
+using detail::IndexTable;
+using detail::SplineStencil;
 
 namespace {
 
@@ -44,10 +48,11 @@ std::optional<Solution> spanned_solution(const Mat3& moment, const Vec3& right) 
 
 TimeField::TimeField(const std::vector<Vec3>& points, const std::vector<double>& times, double spacing)
     : spacing_(spacing) {
+  auto index = std::make_shared<IndexTable>();
   for (std::size_t p = 0; p < points.size(); ++p) {
     if (!(times[p] >= 0)) continue;
     SplineStencil(points[p], spacing).for_each([&](std::uint64_t key, double w) {
-      const int n = index_.insert(key);
+      const int n = index->insert(key);
       if (n == static_cast<int>(nodes_.size())) nodes_.emplace_back();
       Node& node = nodes_[n];
       node.weight += w;
@@ -55,6 +60,7 @@ TimeField::TimeField(const std::vector<Vec3>& points, const std::vector<double>&
       node.position += w * points[p];
     });
   }
+  index_ = std::move(index);
   for (Node& node : nodes_) {
     if (node.weight < least_weight) continue;
     node.time /= node.weight;
@@ -68,7 +74,7 @@ std::optional<TimeField::Sample> TimeField::at(const Vec3& x) const {
   Mat3 second = Mat3::Zero();
   int reference = -1;
   SplineStencil(x, spacing_).for_each([&](std::uint64_t key, double w) {
-    const int n = index_.find(key);
+    const int n = index_->find(key);
     if (n < 0 || nodes_[n].weight < least_weight) return;
     if (reference < 0) reference = n;
     const double t = nodes_[n].time - nodes_[reference].time;
@@ -87,4 +93,4 @@ std::optional<TimeField::Sample> TimeField::at(const Vec3& x) const {
   return Sample{here, fit->gradient, fit->open};
 }
 
-}  // namespace sunder::crack::detail
+}  // namespace sunder::crack
