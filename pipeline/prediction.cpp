@@ -88,11 +88,15 @@ Forecaster::Forecaster(const Scene& scene, const Simulation& simulation, double 
   const RunOptions options;
   Simulation pilot(coarse, options, simulation.world_state(), simulation.state());
   const long steps = static_cast<long>(last_frame(scene) - scene.start_frame) * pilot.steps_per_frame();
-  double spent = 0, affordable = most_seconds;
-  while (static_cast<long>(rigid_.size()) < steps && spent < affordable) {
+  double spent = 0;
+  // What takes long from its beginning is worth the whole pilot.
+  const auto enough = [&] {
+    return spent >= most_seconds || (spent >= share * at(scene.quality, 1).processor_seconds &&
+                                     static_cast<double>(rigid_.size()) >= 0.3 * static_cast<double>(steps));
+  };
+  while (static_cast<long>(rigid_.size()) < steps && !enough()) {
     progress.checkpoint("forecast", static_cast<double>(rigid_.size()) / static_cast<double>(steps));
     spent += follow(pilot, progress);
-    affordable = std::min(most_seconds, share * at(scene.quality, 1).processor_seconds);
   }
   sum_up(pilot, steps);
 }

@@ -21,7 +21,7 @@ using validation::Problem;
 
 /// In the order of the catalogue, each once.
 std::vector<Problem> chosen(const ValidateOptions& options) {
-  const auto& all = options.hard ? hard_cases() : validation::problems();
+  const auto& all = options.hard ? hard_cases() : catalogue();
   for (const std::string& id : options.only) {
     if (std::any_of(all.begin(), all.end(), [&](const Problem& p) { return p.id == id; })) continue;
     std::string known;
@@ -42,7 +42,7 @@ void require_resolutions(const ValidateOptions& options, const std::vector<Probl
     throw Error(ErrorKind::usage, "--resolution belongs to one problem: what it counts differs; name it by --only");
   if (list[0].study) return;
   std::string studied;
-  for (const Problem& p : validation::problems())
+  for (const Problem& p : catalogue())
     if (p.study) studied += (studied.empty() ? "" : ", ") + p.id;
   throw Error(ErrorKind::usage,
               "the answer of " + list[0].id + " does not depend on a resolution; problems that have one: " + studied);

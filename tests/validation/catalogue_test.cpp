@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "pipeline/hard_cases.h"
 #include "validation/study.h"
 
 namespace sunder::validation {
@@ -33,7 +34,7 @@ TEST_P(Catalogue, Holds) {
 
 std::vector<Problem> studied() {
   std::vector<Problem> list;
-  for (const Problem& p : sunder::validation::problems())
+  for (const Problem& p : sunder::pipeline::catalogue())
     if (p.study) list.push_back(p);
   return list;
 }
@@ -67,7 +68,7 @@ TEST(Study, OrderThatIsTooLowFails) {
   EXPECT_TRUE(measure(sunder::validation::Study{"e", "n", {4, 8, 16}, {}, first_order}).passed);
 }
 
-INSTANTIATE_TEST_SUITE_P(Problems, Catalogue, ::testing::ValuesIn(sunder::validation::problems()),
+INSTANTIATE_TEST_SUITE_P(Problems, Catalogue, ::testing::ValuesIn(sunder::pipeline::catalogue()),
                          [](const auto& p) { return p.param.id; });
 
 }  // namespace
