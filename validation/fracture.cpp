@@ -370,8 +370,8 @@ std::vector<Problem> fracture() {
       {"B6", "Path of a mode I crack, also off the grid", "symmetry", straight_path},
       {"B7", "Kink of a crack in shear and in inclined tension", "maximum hoop stress: 70.5 and 53.1 degrees", kinks},
       {"B10", "Speed of mode I cracks, 99th percentile over windows of 4 h", "below that of Rayleigh waves", speeds}};
-  const auto machines = detail::machines();
-  list.insert(list.end(), machines.begin(), machines.end());
+  for (const auto& part : {detail::machines(), detail::dynamic_cracks(), detail::expanding_ring()})
+    list.insert(list.end(), part.begin(), part.end());
   return list;
 }
 

@@ -27,7 +27,8 @@ Check within(const std::string& what, double value, double least, double most) {
 const std::vector<Problem>& problems() {
   static const std::vector<Problem> all = [] {
     std::vector<Problem> list;
-    for (const auto& part : {elasticity(), damage(), fracture(), surfaces(), rigid_bodies(), contact()})
+    for (const auto& part :
+         {elasticity(), damage(), fracture(), size_distributions(), surfaces(), rigid_bodies(), contact()})
       list.insert(list.end(), part.begin(), part.end());
     // Ids are a letter and a number, perhaps with a variant.
     std::stable_sort(list.begin(), list.end(), [](const Problem& a, const Problem& b) {

@@ -23,7 +23,7 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"crack", {"core", "geometry", "crack"}},
     {"rigid", {"core", "geometry", "rigid", "tbb"}},
     {"output", {"core", "geometry", "output"}},
-    {"validation", {"core", "geometry", "mpm", "crack", "rigid", "validation"}},
+    {"validation", {"core", "geometry", "mpm", "crack", "rigid", "statistics", "validation"}},
     {"pipeline", {"core", "geometry", "mpm", "crack", "rigid", "output", "validation", "statistics", "pipeline"}},
 };
 
