@@ -240,6 +240,7 @@ int dispatch(int argc, char** argv, LogSettings& log) {
       ->delimiter(',')
       ->check(CLI::Range(2, 100000));
   validate_app->add_option("--json", validate_options.json, "File for the results");
+  validate_app->add_option("--svg", validate_options.svg, "File for the overview of error against time");
   validate_app->add_option("--html", validate_options.html, "File for the results as a page with charts");
 
   try {

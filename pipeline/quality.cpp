@@ -3,6 +3,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <string_view>
 #include <utility>
 
@@ -11,6 +12,18 @@ namespace {
 
 constexpr std::array<std::pair<const char*, Quality>, 3> levels = {
     {{"draft", Quality::draft}, {"preview", Quality::preview}, {"final", Quality::final}}};
+
+/// Means of docs/accuracy.md, of solves with so many particles against those with 160000 and more.
+struct Measured {
+  int particles;
+  double cracks, fragments, force;  ///< distance [body diagonal]; relative
+};
+constexpr std::array<Measured, 5> ladder = {{{5000, 0.055, 0.39, 0.29},
+                                             {10000, 0.048, 0.44, 0.24},
+                                             {20000, 0.041, 0.26, 0.20},
+                                             {40000, 0.035, 0.35, 0.16},
+                                             {80000, 0.042, 0.9, 0.13}}};
+constexpr double cracks_between_seeds = 0.033;
 
 }  // namespace
 
@@ -38,7 +51,21 @@ std::optional<Quality> quality_of(const std::string& name) {
   return Quality::of(particles);
 }
 
-std::string accuracy_of(const Quality& quality) { return "quality " + name_of(quality); }
+std::string accuracy_of(const Quality& quality) {
+  const Measured* nearest = &ladder[0];
+  for (const Measured& m : ladder)
+    if (m.particles <= quality.particles) nearest = &m;
+  const bool within = quality.particles >= ladder.front().particles && quality.particles < 2 * ladder.back().particles;
+  char text[400];
+  std::snprintf(
+      text, sizeof text,
+      "quality %s, measured on five scenes against solves of 160000 particles and more%s: cracks lie %.1f %% of "
+      "the body's diagonal from theirs (those of another seed %.1f %%), the number of fragments differs by "
+      "%.0f %%, peak contact forces by %.0f %%",
+      name_of(quality).c_str(), within ? "" : " (nearest that was measured)", 100 * nearest->cracks,
+      100 * cracks_between_seeds, 100 * nearest->fragments, 100 * nearest->force);
+  return text;
+}
 
 std::optional<double> duration_of(const std::string& text) {
   double number = 0;

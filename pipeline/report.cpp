@@ -127,6 +127,12 @@ std::string sizes_line(const std::vector<const output::Piece*>& fragments) {
   return line + (best ? "; law with the lowest AIC: " + std::string(name_of(*best)) : std::string()) + "\n";
 }
 
+/// Not of reports of commands that solve nothing.
+Json accuracy_json(const Report& report) {
+  const auto quality = quality_of(report.quality);
+  return quality ? Json(accuracy_of(*quality)) : Json(nullptr);
+}
+
 Json prediction_json(const Report& report) {
   if (!report.prediction) return nullptr;
   const Prediction& p = *report.prediction;
@@ -209,6 +215,7 @@ std::string to_json(const Report& report, const output::Sequence& sequence) {
       {"fingerprint", report.fingerprint},
       {"seed", report.seed},
       {"quality", report.quality},
+      {"accuracy", accuracy_json(report)},
       {"threads", report.threads},
       {"interrupted", report.interrupted},
       {"prediction", prediction_json(report)},

@@ -85,6 +85,7 @@ void print(const ProblemResult& result) {
 
 void write(const std::vector<ProblemResult>& results, const ValidateOptions& options) {
   if (!options.json.empty()) output::write_atomically(options.json, detail::validation_json(results).dump(2) + "\n");
+  if (!options.svg.empty()) output::write_atomically(options.svg, detail::overview_svg(results));
   if (!options.html.empty())
     output::write_atomically(
         options.html, detail::validation_page(options.hard ? "Hard cases of Sunder" : "Validation of Sunder", results));
@@ -95,7 +96,7 @@ void write(const std::vector<ProblemResult>& results, const ValidateOptions& opt
 bool validate(const ValidateOptions& options, Progress& progress) {
   const std::vector<Problem> list = chosen(options);
   require_resolutions(options, list);
-  for (const auto& file : {options.json, options.html})
+  for (const auto& file : {options.json, options.svg, options.html})
     if (!file.empty()) output::require_writable(std::filesystem::absolute(file).parent_path());
   std::vector<ProblemResult> results;
   double seconds = 0;

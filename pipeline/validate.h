@@ -13,6 +13,7 @@ struct ValidateOptions {
   std::vector<std::string> only;  ///< ids; none: all
   std::vector<int> resolutions;   ///< of the studies, instead of their own; needs `only`
   std::filesystem::path json;     ///< file for the results; empty: none
+  std::filesystem::path svg;      ///< the overview of error against time; empty: none
   std::filesystem::path html;     ///< the same as a page with charts; empty: none
 };
 

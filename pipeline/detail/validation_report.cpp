@@ -158,6 +158,8 @@ Json validation_json(const std::vector<ProblemResult>& results) {
   return {{"machine", machine_json()}, {"problems", problems}};
 }
 
+std::string overview_svg(const std::vector<ProblemResult>& results) { return svg(overview_chart(results)); }
+
 std::string validation_page(const std::string& title, const std::vector<ProblemResult>& results) {
   const auto failed = std::count_if(results.begin(), results.end(), [](const auto& r) { return !r.passed(); });
   std::string body = formatted("<p>%zu problems, %ld of them failed.</p>\n", results.size(), static_cast<long>(failed));

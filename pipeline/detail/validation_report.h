@@ -24,6 +24,9 @@ struct ProblemResult {
 /// `machine` and `problems[]`; docs/accuracy.md explains the keys.
 nlohmann::ordered_json validation_json(const std::vector<ProblemResult>& results);
 
+/// Error against time of all studies, relative to their coarsest resolutions.
+std::string overview_svg(const std::vector<ProblemResult>& results);
+
 /// HTML in one file, without scripts.
 std::string validation_page(const std::string& title, const std::vector<ProblemResult>& results);
 

@@ -1,14 +1,6 @@
-// How far the results can be trusted: what the quality level is for, and what this run measured of itself.
+// How far the results can be trusted: what was measured of its quality level, and what this run measured of itself.
 import { element } from "../dom.js";
 import { count, length, number, percent, pressure } from "../format.js";
-
-const LEVELS = {
-  draft:
-    "Draft shows whether and roughly where things break. Numbers and sizes of fragments change with the resolution.",
-  preview: "Preview settles where the main cracks run. Small fragments still change with the resolution.",
-  final:
-    "Final resolves the most that the program offers by itself, and lets the sides of cracks part during the solve.",
-};
 
 const worst = (list, key) => Math.max(...list.map(key));
 
@@ -50,7 +42,7 @@ export function accuracyStatement(report) {
     "div",
     { class: "card" },
     element("h3", {}, "Accuracy"),
-    LEVELS[report.quality] ? element("p", {}, LEVELS[report.quality]) : null,
+    report.accuracy ? element("p", {}, `${report.accuracy[0].toUpperCase()}${report.accuracy.slice(1)}.`) : null,
     element(
       "ul",
       {},
