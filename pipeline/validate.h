@@ -9,12 +9,12 @@
 namespace sunder::pipeline {
 
 struct ValidateOptions {
-  bool hard = false;              ///< the hard cases (pipeline/hard_cases.h) instead of the catalogue
-  std::vector<std::string> only;  ///< ids; none: all
-  std::vector<int> resolutions;   ///< of the studies, instead of their own; needs `only`
-  std::filesystem::path json;     ///< file for the results; empty: none
-  std::filesystem::path svg;      ///< the overview of error against time; empty: none
-  std::filesystem::path html;     ///< the same as a page with charts; empty: none
+  bool hard = false;                   ///< the hard cases (pipeline/hard_cases.h) instead of the catalogue
+  std::vector<std::string> only = {};  ///< ids; none: all
+  std::vector<int> resolutions = {};   ///< of the studies, instead of their own; needs `only`
+  std::filesystem::path json = {};     ///< file for the results; empty: none
+  std::filesystem::path svg = {};      ///< the overview of error against time; empty: none
+  std::filesystem::path html = {};     ///< the same as a page with charts; empty: none
 };
 
 /// Prints a table on standard output, a problem at a time, and writes the files at the end. True when every check

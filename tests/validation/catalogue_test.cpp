@@ -2,9 +2,12 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
+#include <map>
 #include <ostream>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "pipeline/hard_cases.h"
 #include "validation/study.h"
@@ -17,17 +20,35 @@ namespace {
 
 using sunder::validation::Problem;
 
+/// Errors that were measured on another machine, by problem and check; empty without them.
+std::map<std::string, double> committed_errors(const std::string& id) {
+  std::map<std::string, double> errors;
+  std::ifstream in(SUNDER_SOURCE_DIR "/docs/measured/catalogue.json");
+  const auto json = nlohmann::json::parse(in);
+  for (const auto& problem : json.at("problems"))
+    if (problem.at("id") == id)
+      for (const auto& check : problem.at("checks"))
+        if (check.at("error").is_number()) errors[check.at("what")] = check.at("error");
+  return errors;
+}
+
+/// Of the bound: what instruction sets and roundings, which cracks amplify, may move an error by.
+constexpr double spread = 0.25;
+
 class Catalogue : public ::testing::TestWithParam<Problem> {};
 
 TEST_P(Catalogue, Holds) {
   const auto start = std::chrono::steady_clock::now();
   const auto outcome = GetParam().run();
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  const auto committed = committed_errors(GetParam().id);
   std::printf("%s: %s, %.1f s\n", GetParam().id.c_str(), GetParam().title.c_str(), seconds.count());
   for (const auto& check : outcome.checks) {
     std::printf("  %-60s %12.6g, reference %12.6g, error %9.3g <= %9.3g\n", check.what.c_str(), check.value,
                 check.reference, check.error, check.bound);
     EXPECT_TRUE(check.passed()) << check.what;
+    ASSERT_TRUE(committed.contains(check.what)) << check.what << ": docs/measured is of another catalogue";
+    EXPECT_NEAR(check.error, committed.at(check.what), spread * check.bound) << check.what;
   }
   EXPECT_FALSE(outcome.checks.empty());
 }
