@@ -43,7 +43,7 @@ class Scale {
   }
 
   std::vector<double> ticks() const {
-    if (!logarithmic_) return steps_of(step_of(high_ - low_));
+    if (!logarithmic_) return steps_of(low_, high_);
     // Fewer than two decades need marks in between.
     const std::vector<double> within = high_ - low_ > 2.5 ? std::vector<double>{1} : std::vector<double>{1, 2, 5};
     std::vector<double> list;
@@ -51,19 +51,20 @@ class Scale {
       for (const double digit : within)
         if (const double at = decade + std::log10(digit); at >= low_ && at <= high_)
           list.push_back(digit * std::pow(10, decade));
-    return list;
+    return list.size() > 2 ? list : steps_of(std::pow(10, low_), std::pow(10, high_));
   }
 
  private:
   static double step_of(double range) {
-    const double raw = range / 5, power = std::pow(10, std::floor(std::log10(raw)));
+    const double raw = range / 7, power = std::pow(10, std::floor(std::log10(raw)));
     for (const double digit : {1.0, 2.0, 5.0})
       if (digit * power >= raw) return digit * power;
     return 10 * power;
   }
-  std::vector<double> steps_of(double step) const {
+  static std::vector<double> steps_of(double least, double most) {
+    const double step = step_of(most - least);
     std::vector<double> list;
-    for (double n = std::ceil(low_ / step); n * step <= high_; ++n) list.push_back(n * step);
+    for (double n = std::ceil(least / step); n * step <= most; ++n) list.push_back(n * step);
     return list;
   }
 

@@ -22,6 +22,12 @@ TEST(Chart, ShowsEveryPointThatCanBeShown) {
   EXPECT_EQ(count(svg(chart), "<circle"), 3u);
 }
 
+TEST(Chart, EveryAxisHasMarks) {
+  // 0.031 to 0.042 holds no 1, 2 or 5.
+  const std::string text = svg({"title", {"time [s]"}, {"error [1]"}, {{"a", {{1, 0.031}, {300, 0.042}}}}});
+  EXPECT_GE(count(text, "text-anchor=\"end\""), 3u) << text;
+}
+
 TEST(Chart, NothingToShow) {
   const Chart chart{"title", {"x"}, {"y"}, {{"a", {}}}};
   EXPECT_NE(svg(chart).find("nothing to show"), std::string::npos);
