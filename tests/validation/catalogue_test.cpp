@@ -5,6 +5,7 @@
 #include <fstream>
 #include <map>
 #include <ostream>
+#include <set>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -35,14 +36,12 @@ std::map<std::string, double> committed_errors(const std::string& id) {
 /// Of the bound: what instruction sets and roundings, which cracks amplify, may move an error by.
 constexpr double spread = 0.25;
 
-class Catalogue : public ::testing::TestWithParam<Problem> {};
-
-TEST_P(Catalogue, Holds) {
+void expect_held(const Problem& problem) {
   const auto start = std::chrono::steady_clock::now();
-  const auto outcome = GetParam().run();
+  const auto outcome = problem.run();
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  const auto committed = committed_errors(GetParam().id);
-  std::printf("%s: %s, %.1f s\n", GetParam().id.c_str(), GetParam().title.c_str(), seconds.count());
+  const auto committed = committed_errors(problem.id);
+  std::printf("%s: %s, %.1f s\n", problem.id.c_str(), problem.title.c_str(), seconds.count());
   for (const auto& check : outcome.checks) {
     std::printf("  %-60s %12.6g, reference %12.6g, error %9.3g <= %9.3g\n", check.what.c_str(), check.value,
                 check.reference, check.error, check.bound);
@@ -89,7 +88,23 @@ TEST(Study, OrderThatIsTooLowFails) {
   EXPECT_TRUE(measure(sunder::validation::Study{"e", "n", {4, 8, 16}, {}, first_order}).passed);
 }
 
-INSTANTIATE_TEST_SUITE_P(Problems, Catalogue, ::testing::ValuesIn(sunder::pipeline::catalogue()),
+/// Those that take more than some seconds.
+std::vector<Problem> chosen(bool slow) {
+  const std::set<std::string> long_ones = {"B5", "B9", "B11", "B15", "C7"};
+  std::vector<Problem> list;
+  for (const Problem& p : sunder::pipeline::catalogue())
+    if (long_ones.contains(p.id) == slow) list.push_back(p);
+  return list;
+}
+
+class Catalogue : public ::testing::TestWithParam<Problem> {};
+TEST_P(Catalogue, Holds) { expect_held(GetParam()); }
+INSTANTIATE_TEST_SUITE_P(Problems, Catalogue, ::testing::ValuesIn(chosen(false)),
+                         [](const auto& p) { return p.param.id; });
+
+class SlowCatalogue : public ::testing::TestWithParam<Problem> {};
+TEST_P(SlowCatalogue, Holds) { expect_held(GetParam()); }
+INSTANTIATE_TEST_SUITE_P(Problems, SlowCatalogue, ::testing::ValuesIn(chosen(true)),
                          [](const auto& p) { return p.param.id; });
 
 }  // namespace
