@@ -222,6 +222,18 @@ void require_honest_off_header(const fs::path& file) {
   }
 }
 
+// Without the end of its header assimp reads a PLY file on and on.
+void require_ply_header_end(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string line;
+  if (!std::getline(in, line) || !line.starts_with("ply")) return;
+  while (std::getline(in, line)) {
+    const std::size_t last = line.find_last_not_of(" \t\r");
+    if (line.substr(0, last + 1) == "end_header") return;
+  }
+  fail(ErrorKind::io, file, "the header has no line \"end_header\"");
+}
+
 // What a file says of itself. FBX counts in units of so many centimetres; assimp applies neither unit nor axis of it.
 struct Stated {
   std::optional<double> metres_per_unit;
@@ -263,6 +275,7 @@ std::string reason_of(const Assimp::Importer& importer, const fs::path& file) {
 TexturedMesh read(const fs::path& file, const LoadSettings& settings) {
   require_readable(file);
   if (file.extension() == ".off") require_honest_off_header(file);
+  require_ply_header_end(file);
   Assimp::Importer importer;
   constexpr int kIgnored = aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_TEXTURES | aiComponent_LIGHTS |
                            aiComponent_CAMERAS | aiComponent_ANIMATIONS | aiComponent_BONEWEIGHTS;

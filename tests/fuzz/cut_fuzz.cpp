@@ -23,7 +23,7 @@ geometry::TriangleMesh body_of(fuzz::Dice& dice) {
     case 2:
       return geometry::torus(0.5, dice.real(0.05, 0.3), 24, 12);
     case 3:
-      return geometry::cup(1, dice.real(0.03, 0.15));
+      return geometry::cup(1, dice.real(0.03, 0.09));
     case 4:
       return geometry::hollow_sphere(0.5, dice.real(0.03, 0.3), 2);
     default:

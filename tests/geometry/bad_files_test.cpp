@@ -44,6 +44,8 @@ const std::vector<BadFile> bad_files = {
     {"text.glb", "once upon a time", ErrorKind::io, ""},
     {"mesh.docx", "once upon a time", ErrorKind::io, "right extension"},
     {"broken.gltf", "{\"asset\":{\"version\":\"2.0\"},\"meshes\":[{", ErrorKind::io, ""},
+    {"endless.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n_header\n0\n", ErrorKind::io,
+     "end_header"},
     {"line.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 1\n", ErrorKind::mesh, ""},
 };
 
