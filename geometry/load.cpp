@@ -280,9 +280,11 @@ TexturedMesh read(const fs::path& file, const LoadSettings& settings) {
   constexpr int kIgnored = aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_TEXTURES | aiComponent_LIGHTS |
                            aiComponent_CAMERAS | aiComponent_ANIMATIONS | aiComponent_BONEWEIGHTS;
   importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, kIgnored);
+  // assimp's reader of OFF takes any number for the index of a vertex.
+  const unsigned checks = file.extension() == ".off" ? unsigned{aiProcess_ValidateDataStructure} : 0;
   const aiScene* scene = nullptr;
   try {
-    scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_RemoveComponent);
+    scene = importer.ReadFile(file.string(), checks | aiProcess_Triangulate | aiProcess_RemoveComponent);
   } catch (const std::exception& error) {
     fail(ErrorKind::io, file, error.what());
   }

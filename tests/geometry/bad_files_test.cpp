@@ -46,6 +46,7 @@ const std::vector<BadFile> bad_files = {
     {"broken.gltf", "{\"asset\":{\"version\":\"2.0\"},\"meshes\":[{", ErrorKind::io, ""},
     {"endless.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n_header\n0\n", ErrorKind::io,
      "end_header"},
+    {"far_index.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 700000\n", ErrorKind::io, ""},
     {"line.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 1\n", ErrorKind::mesh, ""},
 };
 
