@@ -46,7 +46,11 @@ const std::vector<BadFile> bad_files = {
     {"broken.gltf", "{\"asset\":{\"version\":\"2.0\"},\"meshes\":[{", ErrorKind::io, ""},
     {"endless.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n_header\n0\n", ErrorKind::io,
      "end_header"},
-    {"far_index.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 700000\n", ErrorKind::io, ""},
+    {"text_faces.off",
+     "OFF\n8 9 0\n0 0 0\n0 0 1\n0 1 0\n0 1 1\n1 0 0\n1 0 1\n1 1 0\n1 1 0\nfacet normal 0 0 0\nouter loop\nvertex 0 0 "
+     "0\n"
+     "vertex 0 0 1\nvertex 0 1 1\nendloop\nendfacet\nfacet normal 0 0 0\nouter loop\nvertex 0 1 0\n",
+     ErrorKind::io, ""},
     {"line.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 1\n", ErrorKind::mesh, ""},
 };
 
