@@ -74,6 +74,15 @@ inline BodySetup tetrahedron(double circumradius, const Vec3& position, double d
   return setup;
 }
 
+/// Loses nothing when it hits its like.
+inline BodySetup bouncy_ball(double radius, const Vec3& position, const Vec3& velocity) {
+  BodySetup setup = ball(radius, position);
+  setup.restitution = 1;
+  setup.friction = 0;
+  setup.twist.linear = velocity;
+  return setup;
+}
+
 inline WorldSettings on_ground(double restitution = 0.3, double friction = 0.6) {
   WorldSettings settings;
   settings.has_ground = true;
@@ -133,6 +142,20 @@ inline Quat random_turn(std::uint64_t stream, std::uint64_t index) {
   const double a = 2 * std::numbers::pi * unit(0), b = 2 * std::numbers::pi * unit(1), u = unit(2);
   return Quat(std::sqrt(u) * std::cos(b), std::sqrt(1 - u) * std::sin(a), std::sqrt(1 - u) * std::cos(a),
               std::sqrt(u) * std::sin(b));
+}
+
+/// Boxes that fall on a heap.
+inline World pile(int count) {
+  World world(on_ground());
+  for (int i = 0; i < count; ++i) {
+    const auto unit = [&](std::uint64_t k) { return random_unit(11, k, static_cast<std::uint64_t>(i)); };
+    BodySetup setup = box(Vec3(0.02 + 0.03 * unit(0), 0.02 + 0.03 * unit(1), 0.02 + 0.03 * unit(2)),
+                          Vec3(0.1 * unit(3), 0.1 + 0.11 * i, 0.1 * unit(4)));
+    setup.pose.orientation = random_turn(5, static_cast<std::uint64_t>(i));
+    setup.twist.linear = Vec3(unit(5), -2 * unit(6), unit(7));
+    world.add(setup);
+  }
+  return world;
 }
 
 }  // namespace sunder::rigid::setup

@@ -38,7 +38,7 @@ const std::map<std::string, std::set<std::string>> libraries = {
      {"btBulletDynamicsCommon.h", "btBulletCollisionCommon.h", "BulletCollision", "BulletDynamics", "LinearMath",
       "tbb"}},
     {"output", {"tiny_gltf.h", "embree3", "png.h", "tbb"}},
-    {"validation", {}},
+    {"validation", {"tbb"}},
     {"pipeline", {"CLI", "cereal", "toml++", "nlohmann", "tbb"}},
 };
 
