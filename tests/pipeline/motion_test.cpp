@@ -197,40 +197,6 @@ TEST_F(Motion, ABodyWithoutSubstanceIsRefusedByName) {
 }
 
 // D8: solved if and only if the impulse of the contact reaches the threshold.
-TEST_F(Motion, TheThresholdDecidesWhatIsSolved) {
-  Scene drop = scene(R"(
-[scene]
-duration = 0.017
-frame_rate = 60
-quality = "draft"
-[ground]
-[[body]]
-name = "ball"
-mesh = "sphere"
-height = 0.1
-position = [0, 0.001, 0]
-velocity = [0, -3, 0]
-material = "plaster"
-[fracture]
-minimum_impulse = 1e-3
-[output]
-obj = false
-glb = false
-page = false
-poster = false
-)");
-  const RunResult first = run_scene(drop);
-  ASSERT_EQ(first.report.fractures.size(), 1u) << "once per contact";
-  const double impulse = first.report.fractures[0].impulse;
-  const double momentum = 3 * first.sequence.pieces[0].mass;
-  EXPECT_GT(impulse, momentum);
-  EXPECT_LT(impulse, 2 * momentum);
-  drop.fracture.minimum_impulse = 0.999 * impulse;
-  EXPECT_EQ(run_scene(drop).report.fractures.size(), 1u);
-  drop.fracture.minimum_impulse = 1.001 * impulse;
-  EXPECT_TRUE(run_scene(drop).report.fractures.empty());
-}
-
 TEST_F(Motion, NothingBreaksAnyMoreOnceThereAreEnoughFragments) {
   Scene many = scene(R"(
 [scene]
