@@ -175,6 +175,8 @@ void add_run(CLI::App& app, RunArguments& arguments, LogSettings& log) {
   add_quality(app, arguments.quality, "; overrides the scene");
   add_time_budget(app, arguments.time_budget);
   app.add_option("--threads", arguments.threads, "Threads to use (default: all)")->check(CLI::Range(1, 1024));
+  app.add_flag("!--no-prediction", arguments.predict,
+               "Leave out the pilot that predicts what the run takes, for the report");
   app.add_flag("--resume", arguments.resume, "Go on where a run into the same folder was stopped");
   app.add_option("--seed", arguments.seed, "Overrides the scene's seed");
   app.add_option("--frames", arguments.frames,

@@ -181,7 +181,7 @@ int run_command(const RunArguments& arguments, const LogSettings& log) {
   options.out = arguments.out.empty() ? fs::path("out") / scene.name : fs::path(arguments.out);
   options.threads = arguments.threads;
   options.resume = arguments.resume;
-  options.predict = true;
+  options.predict = arguments.predict;
   if (arguments.dry_run) return say_dry_run(scene, options, log);
   if (arguments.resume && is_complete(scene, options.out)) return say_nothing_left(options.out, log);
   options.on_solve = [&](const SettledSolve& solve) {

@@ -17,6 +17,7 @@ struct RunArguments {
   std::optional<std::uint64_t> seed;
   int threads = 0;
   bool resume = false, dry_run = false;
+  bool predict = true;  ///< say in the report what was expected
 };
 
 /// Simulates, or with `dry_run` says what would be simulated and written. Returns the exit code. Errors: those of

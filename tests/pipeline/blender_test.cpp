@@ -38,6 +38,8 @@ height = 0.08
 position = [0.42, 0.02, -0.21]
 velocity = [0, -8, 0]
 material = "steel"
+[fracture]
+maximum_fractures = 1
 [output]
 poster = false
 obj = false

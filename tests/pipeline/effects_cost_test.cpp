@@ -59,7 +59,7 @@ double instructions(const std::string& program, const fs::path& folder) {
   const std::string command =
       "cd " + folder.string() +
       " && LD_BIND_NOW=1 valgrind -q --tool=callgrind --toggle-collect=main --callgrind-out-file=" + counts.string() +
-      " " + binary.string() + " run cube.toml --threads 1 --log json --out out >run.log 2>&1";
+      " " + binary.string() + " run cube.toml --no-prediction --threads 1 --log json --out out >run.log 2>&1";
   EXPECT_EQ(std::system(command.c_str()), 0) << output::read_all(folder / "run.log");
   EXPECT_NE(output::read_all(folder / "run.log").find("\"event\":\"fracture\""), std::string::npos);
   std::ifstream in(counts);
