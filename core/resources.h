@@ -4,7 +4,7 @@
 
 namespace sunder {
 
-/// Processor time of all threads since the start of the process [s].
+/// Processor time of all threads since the start of the process, and of its children that have ended [s].
 double cpu_seconds();
 
 /// Most memory that the process has held at once since its start, or since restart_peak_memory() [MB].

@@ -9,7 +9,6 @@
 #include <iomanip>
 #include <limits>
 #include <set>
-#include <stdexcept>
 #include <system_error>
 #include <utility>
 
@@ -17,19 +16,10 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include "core/child_process.h"
 #include "core/error.h"
 #include "geometry/detail/clean.h"
-
-namespace Assimp {
-
-// Debian builds assimp with assertions that end the process, and damaged files reach them. The definition of a program
-// goes before that of a shared library: as an exception, the importer catches it and the file is refused.
-[[noreturn]] void aiAssertViolation(const char* expression, const char*, int);
-[[noreturn]] void aiAssertViolation(const char* expression, const char*, int) {
-  throw std::runtime_error(std::string("the file is damaged (") + expression + " does not hold)");
-}
-
-}  // namespace Assimp
+#include "geometry/detail/packed_mesh.h"
 
 namespace sunder::geometry {
 namespace {
@@ -272,10 +262,7 @@ std::string reason_of(const Assimp::Importer& importer, const fs::path& file) {
          (known ? "" : "; is '" + file.extension().string() + "' the right extension?");
 }
 
-TexturedMesh read(const fs::path& file, const LoadSettings& settings) {
-  require_readable(file);
-  if (file.extension() == ".off") require_honest_off_header(file);
-  require_ply_header_end(file);
+TexturedMesh read_by_assimp(const fs::path& file, const LoadSettings& settings) {
   Assimp::Importer importer;
   constexpr int kIgnored = aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_TEXTURES | aiComponent_LIGHTS |
                            aiComponent_CAMERAS | aiComponent_ANIMATIONS | aiComponent_BONEWEIGHTS;
@@ -294,6 +281,22 @@ TexturedMesh read(const fs::path& file, const LoadSettings& settings) {
   result.metres_per_unit = settings.metres_per_unit.value_or(stated.metres_per_unit.value_or(1));
   result.up = settings.up.value_or(stated.up.value_or(UpAxis::y));
   return result;
+}
+
+// Damaged files make assimp crash, fail an assertion (Debian builds it with them) or go on and on, so it works in a
+// process of its own, with many times the processor time that sound files take.
+TexturedMesh read(const fs::path& file, const LoadSettings& settings) {
+  require_readable(file);
+  if (file.extension() == ".off") require_honest_off_header(file);
+  require_ply_header_end(file);
+  const double megabytes = 1e-6 * static_cast<double>(fs::file_size(file));
+  try {
+    return detail::unpacked(
+        in_child_process([&] { return detail::packed(read_by_assimp(file, settings)); }, 60 + 5 * megabytes));
+  } catch (const ChildFailed& failed) {
+    fail(ErrorKind::io, file,
+         std::string("is damaged or of a kind that cannot be read: the importer ") + failed.what());
+  }
 }
 
 template <typename T>

@@ -1,5 +1,6 @@
 #include "pipeline/run.h"
 
+#include <chrono>
 #include <fstream>
 #include <thread>
 
@@ -19,6 +20,8 @@ namespace sunder::pipeline {
 namespace {
 
 int frame_count(const Scene& scene) { return last_frame(scene) - scene.start_frame + 1; }
+
+constexpr double kMostSaving = 0.05;  // share of the time that checkpoints may take after the first one
 
 std::filesystem::path checkpoint_file(const std::filesystem::path& out) { return out / "checkpoint.bin"; }
 
@@ -71,7 +74,8 @@ class Run {
         steps_ = 0;
         record();
         const int interval = scene_.outputs.checkpoint_interval;
-        if (interval > 0 && frames_done() % interval == 0 && frames_done() < frames) save();
+        save_due_ |= interval > 0 && frames_done() % interval == 0;
+        if (save_due_ && affords_save() && frames_done() < frames) save();
       }
       progress.report("total", 1);
       return true;
@@ -99,9 +103,19 @@ class Run {
     write_newest_frame(scene_, simulation_->sequence(), options_.out, obj_);
   }
 
+  bool affords_save() const {
+    const std::chrono::duration<double> ran = std::chrono::steady_clock::now() - begun_;
+    return save_seconds_ <= kMostSaving * ran.count();
+  }
+
   void save() {
-    const Stopwatch watch(simulation_->report().seconds.checkpoint);
-    write_checkpoint(file(), fingerprint_, steps_, *simulation_);
+    const double before = simulation_->report().seconds.checkpoint;
+    {
+      const Stopwatch watch(simulation_->report().seconds.checkpoint);
+      write_checkpoint(file(), fingerprint_, steps_, *simulation_);
+    }
+    save_seconds_ += simulation_->report().seconds.checkpoint - before;
+    save_due_ = false;
   }
 
   const Scene& scene_;
@@ -110,6 +124,9 @@ class Run {
   std::optional<Simulation> simulation_;
   output::ObjFrames obj_;
   int steps_ = 0;  ///< since the last frame
+  const std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
+  double save_seconds_ = 0;  ///< since it was begun
+  bool save_due_ = false;
 };
 
 }  // namespace

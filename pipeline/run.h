@@ -39,11 +39,11 @@ bool is_complete(const Scene& scene, const std::filesystem::path& out);
 /// Bodies move; an impact over the threshold starts a solve of the body that was hit, the step is taken back and
 /// repeated with the fragments in its place. Writes what scene.outputs asks for (pipeline/outputs.h), the files of a
 /// frame or solve as soon as it is finished, the others at the end, report.json last. Every
-/// scene.outputs.checkpoint_interval frames the state goes to checkpoint.bin, which a complete run removes. When
-/// `progress` is cancelled, what was finished and the state are written, report.interrupted is set, and the result
-/// returned. A resumed run writes the same bytes as one that was never stopped, times in report.json apart. Errors:
-/// ErrorKind::usage for bodies that overlap at the start and those of read_checkpoint, ErrorKind::mesh,
-/// ErrorKind::unstable, ErrorKind::io.
+/// scene.outputs.checkpoint_interval frames, or later where that would take over 5 % of the time, the state goes to
+/// checkpoint.bin, which a complete run removes. When `progress` is cancelled, what was finished and the state are
+/// written, report.interrupted is set, and the result returned. A resumed run writes the same bytes as one that was
+/// never stopped, times in report.json apart. Errors: ErrorKind::usage for bodies that overlap at the start and those
+/// of read_checkpoint, ErrorKind::mesh, ErrorKind::unstable, ErrorKind::io.
 RunResult run(const Scene& scene, const RunOptions& options, Progress& progress);
 
 }  // namespace sunder::pipeline

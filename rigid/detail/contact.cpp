@@ -85,11 +85,32 @@ Axis quick_separation(const Placed& a, const Placed& b) {
   return axis;
 }
 
-// The best face normal of either part: exact where a face touches, and never too far off elsewhere.
-Axis best_face_axis(const Placed& a, const Placed& b) {
+// Directions of the part's edges, each once.
+std::vector<Vec3> edge_directions(const Placed& part) {
+  std::vector<Vec3> edges;
+  for (const HullFace& face : part.hull.faces)
+    for (std::size_t k = 0; k < face.loop.size(); ++k) {
+      const int from = face.loop[k], to = face.loop[(k + 1) % face.loop.size()];
+      if (from < to) edges.push_back(part.point(to) - part.point(from));
+    }
+  return edges;
+}
+
+// By the separating axis theorem: slow, for where GJK and EPA come to no end. Bodies that just touch leave them without
+// a direction too, and often; there the edges, which can only say that bodies are less deep, are not worth the time.
+Axis best_axis(const Placed& a, const Placed& b, double worth) {
   Axis best;
   for (const HullFace& f : a.hull.faces) improve(best, axis_along(a, b, -(a.rotation * f.normal)));
   for (const HullFace& f : b.hull.faces) improve(best, axis_along(a, b, b.rotation * f.normal));
+  if (best.gap > -worth) return best;
+  const std::vector<Vec3> of_b = edge_directions(b);
+  for (const Vec3& e : edge_directions(a))
+    for (const Vec3& f : of_b) {
+      const Vec3 normal = e.cross(f);
+      if (!(normal.norm() > 1e-9 * e.norm() * f.norm())) continue;  // parallel edges: a face is as good
+      improve(best, axis_along(a, b, normal.normalized()));
+      improve(best, axis_along(a, b, -normal.normalized()));
+    }
   return best;
 }
 
@@ -129,7 +150,7 @@ Separation separation(const Placed& a, const btTransform& place_a, const Placed&
   // the distance.
   const double accuracy = witness_accuracy * std::min(a.hull.radius, b.hull.radius);
   if (!(std::abs(result.axis.gap - found.distance) < accuracy)) {
-    result.axis = best_face_axis(a, b);
+    result.axis = best_axis(a, b, missed_depth * std::min(a.hull.radius, b.hull.radius));
     result.on_a = a.point(a.extreme(-result.axis.normal));
     result.on_b = result.on_a - result.axis.gap * result.axis.normal;
   }

@@ -13,7 +13,7 @@
 
 namespace {
 
-constexpr std::array formats = {"obj", "off", "stl", "ply"};
+constexpr std::array formats = {"obj", "off", "stl", "ply", "glb"};
 
 /// Formats are told by the name's end.
 std::filesystem::path named_file(const std::uint8_t* data, std::size_t size, const char* format) {
