@@ -7,7 +7,10 @@ namespace sunder::mpm {
 bool has(InstructionSet set) {
 #if defined(__x86_64__)
   if (set == InstructionSet::avx2) return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-  if (set == InstructionSet::avx512) return __builtin_cpu_supports("x86-64-v4");
+  if (set == InstructionSet::avx512)
+    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+           __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
+           __builtin_cpu_supports("avx512vl");
 #endif
   return set == InstructionSet::portable;
 }
