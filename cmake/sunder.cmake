@@ -68,8 +68,10 @@ function(sunder_version_header)
     COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -DVERSION=${PROJECT_VERSION}
             -DOUTPUT=${PROJECT_BINARY_DIR}/generated/sunder_version.h -P ${PROJECT_SOURCE_DIR}/cmake/version.cmake
     BYPRODUCTS ${PROJECT_BINARY_DIR}/generated/sunder_version.h COMMENT "")
-  target_include_directories(sunder_pipeline PRIVATE ${PROJECT_BINARY_DIR}/generated)
-  add_dependencies(sunder_pipeline sunder_version_header)
+  foreach(module pipeline batch cli)
+    target_include_directories(sunder_${module} PRIVATE ${PROJECT_BINARY_DIR}/generated)
+    add_dependencies(sunder_${module} sunder_version_header)
+  endforeach()
 endfunction()
 
 # The pass over a block of particles once per instruction set; the best of the machine is chosen when the program runs.
@@ -93,7 +95,7 @@ endfunction()
 # core/optional_effects.h are compiled once more; they win over those in the libraries, which are not asked any more.
 function(sunder_without_effects)
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/*/*.cpp)
-  set(hooked ${PROJECT_SOURCE_DIR}/pipeline/main.cpp)
+  set(hooked ${PROJECT_SOURCE_DIR}/cli/main.cpp)
   foreach(source ${sources})
     file(STRINGS ${source} mentions REGEX with_optional_effects)
     if(mentions)
@@ -103,5 +105,5 @@ function(sunder_without_effects)
   file(GLOB passes CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/mpm/detail/block_pass_*.cpp)
   add_executable(sunder_without_effects ${hooked} ${passes})
   target_compile_definitions(sunder_without_effects PRIVATE SUNDER_WITHOUT_EFFECTS)
-  target_link_libraries(sunder_without_effects PRIVATE sunder_pipeline TBB::tbb)
+  target_link_libraries(sunder_without_effects PRIVATE sunder_cli TBB::tbb)
 endfunction()

@@ -11,6 +11,7 @@ enum class ErrorKind {
   mesh = 3,           ///< a mesh that cannot be used
   unstable = 4,       ///< the simulation could not be kept stable
   io = 5,             ///< a file could not be read or written
+  jobs_failed = 7,    ///< some jobs of a batch failed, or are missing
   interrupted = 130,  ///< Ctrl-C
 };
 

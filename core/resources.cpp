@@ -1,5 +1,6 @@
 #include "core/resources.h"
 
+#include <array>
 #include <ctime>
 #include <fstream>
 #include <thread>
@@ -55,6 +56,17 @@ Machine machine() {
   std::string name = line_of("/proc/cpuinfo", "model name");
   return {name.empty() ? "unknown processor" : std::move(name), static_cast<int>(std::thread::hardware_concurrency()),
           pages * page / 1e9};
+}
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  gethostname(name.data(), name.size() - 1);
+  return name.data();
+}
+
+double available_memory_mb() {
+  const std::string available = line_of("/proc/meminfo", "MemAvailable");
+  return available.empty() ? 1e3 * machine().memory_gb : std::stod(available) / 1024;
 }
 
 }  // namespace sunder

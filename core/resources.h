@@ -19,4 +19,10 @@ struct Machine {
 };
 Machine machine();
 
+/// Of this machine in its network.
+std::string host_name();
+
+/// Memory that programs can still take [MB].
+double available_memory_mb();
+
 }  // namespace sunder

@@ -1,11 +1,11 @@
 #include "pipeline/checkpoint.h"
 
-#include <cstdio>
 #include <fstream>
 #include <set>
 #include <sstream>
 
 #include "core/error.h"
+#include "core/hash.h"
 #include "output/atomic_file.h"
 #include "pipeline/detail/archive.h"
 #include "sunder_version.h"
@@ -18,28 +18,12 @@ namespace fs = std::filesystem;
 const std::string magic = "sunder checkpoint 1\n";
 const std::string build = std::string(SUNDER_VERSION) + " (" + SUNDER_GIT + ")";
 
-/// FNV-1a over everything it is given.
-class Hash {
- public:
-  void add(std::string_view bytes) {
-    for (const char c : bytes) value_ = (value_ ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
-  }
-  void add(double number) { add({reinterpret_cast<const char*>(&number), sizeof number}); }
-  void add_file(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::ostringstream text;
-    text << in.rdbuf();
-    add(text.str());
-  }
-  std::string digits() const {
-    char text[17];
-    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value_));
-    return text;
-  }
-
- private:
-  std::uint64_t value_ = 14695981039346656037ULL;
-};
+void add_file(Hash& hash, const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  hash.add(text.str());
+}
 
 std::string hash_of(std::string_view bytes) {
   Hash hash;
@@ -65,12 +49,13 @@ void serialize(Archive& archive, Header& header) {
 
 std::string fingerprint(const Scene& scene) {
   Hash hash;
-  hash.add_file(scene.file);
-  hash.add_file(default_assets().materials);
-  hash.add_file(default_assets().meshes);
+  add_file(hash, scene.file);
+  for (const Override& change : scene.overrides) hash.add(change.key + " = " + change.value);
+  add_file(hash, default_assets().materials);
+  add_file(hash, default_assets().meshes);
   std::set<fs::path> meshes;
   for (const SceneBody& body : scene.bodies) meshes.insert(body.mesh.file);
-  for (const fs::path& mesh : meshes) hash.add_file(mesh);
+  for (const fs::path& mesh : meshes) add_file(hash, mesh);
   for (const double number : {scene.duration, scene.frame_rate}) hash.add(number);
   hash.add(scene.time_budget ? "within " + std::to_string(*scene.time_budget) : name_of(scene.quality));
   for (const auto& frame : {scene.outputs.first_frame, scene.outputs.last_frame})

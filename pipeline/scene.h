@@ -97,11 +97,18 @@ struct Outputs {
   int checkpoint_interval = 10;    ///< frames between two checkpoints; 0: only when the run is stopped
 };
 
+/// A value in place of one of the scene file, or beside those: "body.cup.velocity", "[0, -5, 0]".
+struct Override {
+  std::string key;    ///< "scene.seed", "body.<name>.<key>", "material.<name>.<key>", "fracture.<key>", ...
+  std::string value;  ///< as TOML
+};
+
 struct Scene {
   std::filesystem::path file;
-  std::string name;        ///< file name without extension
-  double duration = 2;     ///< [s]
-  double frame_rate = 24;  ///< [1/s]
+  std::vector<Override> overrides;  ///< that were read with it
+  std::string name;                 ///< file name without extension
+  double duration = 2;              ///< [s]
+  double frame_rate = 24;           ///< [1/s]
   int start_frame = 1;
   std::uint64_t seed = 1;
   Vec3 gravity = Vec3(0, -9.81, 0);
@@ -128,8 +135,10 @@ struct AssetPaths {
 AssetPaths default_assets();
 
 /// Reads and checks a scene. Every unknown key, wrong type, missing name and impossible value is an Error (usage; mesh
-/// file missing: usage) "file:line: what is wrong; expected ...; did you mean ...?".
-Scene load_scene(const std::filesystem::path& file, const AssetPaths& assets = default_assets());
+/// file missing: usage) "file:line: what is wrong; expected ...; did you mean ...?". With overrides the message also
+/// lists them, and an override of what the scene does not have (a body, a section) is an error.
+Scene load_scene(const std::filesystem::path& file, const AssetPaths& assets = default_assets(),
+                 const std::vector<Override>& overrides = {});
 
 /// What repair did to a mesh, and how far that went.
 struct MeshRepair {

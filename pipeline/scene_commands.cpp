@@ -69,7 +69,7 @@ void choose_quality(Scene& scene, const std::optional<Quality>& quality, const s
 }
 
 Scene scene_of(const RunArguments& arguments) {
-  Scene scene = load_scene(arguments.scene);
+  Scene scene = load_scene(arguments.scene, default_assets(), arguments.overrides);
   choose_quality(scene, arguments.quality, arguments.time_budget);
   if (arguments.seed) scene.seed = *arguments.seed;
   choose_frames(scene, arguments.frames);
@@ -225,7 +225,7 @@ void say_prediction(const Scene& scene, const Prediction& p) {
 }  // namespace
 
 int check_command(const CheckArguments& arguments) {
-  Scene scene = load_scene(arguments.scene);
+  Scene scene = load_scene(arguments.scene, default_assets(), arguments.overrides);
   choose_quality(scene, arguments.quality, arguments.time_budget);
   RunOptions options;
   options.threads = arguments.threads;

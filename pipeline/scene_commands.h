@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "pipeline/progress_display.h"
 #include "pipeline/report.h"
@@ -15,6 +16,7 @@ struct RunArguments {
   std::optional<Quality> quality;
   std::optional<double> time_budget;  ///< [s]
   std::optional<std::uint64_t> seed;
+  std::vector<Override> overrides;
   int threads = 0;
   bool resume = false, dry_run = false;
   bool predict = true;  ///< say in the report what was expected
@@ -27,6 +29,7 @@ int run_command(const RunArguments& arguments, const LogSettings& log);
 
 struct CheckArguments {
   std::string scene;
+  std::vector<Override> overrides;
   std::optional<Quality> quality;
   std::optional<double> time_budget;  ///< [s]
   int threads = 0;

@@ -7,7 +7,9 @@
 #include "pipeline/detail/body_keys.h"
 #include "pipeline/detail/effect_keys.h"
 #include "pipeline/detail/material_keys.h"
+#include "pipeline/detail/quality_words.h"
 #include "pipeline/detail/scene_keys.h"
+#include "pipeline/detail/scene_override.h"
 #include "pipeline/scene.h"
 
 namespace sunder::pipeline {
@@ -16,15 +18,7 @@ namespace {
 
 constexpr std::int64_t kMaximumCount = std::numeric_limits<int>::max();
 
-void read_quality(const Value& value, Scene& scene) {
-  if (value.is_integer()) {
-    scene.quality = Quality::of(static_cast<int>(value.integer(Quality::least_particles, Quality::most_particles)));
-    return;
-  }
-  constexpr std::array<std::pair<std::string_view, Quality>, 3> kQualities = {
-      {{"draft", Quality::draft}, {"preview", Quality::preview}, {"final", Quality::final}}};
-  scene.quality = value.word<Quality>(kQualities);
-}
+void read_quality(const Value& value, Scene& scene) { scene.quality = read_quality_level(value); }
 
 /// Seconds, or text such as "90 s", "5 min", "2 h".
 void read_time_budget(const Value& value, Scene& scene) {
@@ -39,7 +33,7 @@ void read_time_budget(const Value& value, Scene& scene) {
 }
 
 void read_seed(const Value& value, Scene& scene) {
-  scene.seed = static_cast<std::uint64_t>(value.integer(0, std::numeric_limits<std::int64_t>::max()));
+  scene.seed = read_seed_value(value);
 }
 
 constexpr std::array<Key<Scene>, 7> kSceneKeys = {{
@@ -302,9 +296,10 @@ AssetPaths default_assets() {
           .mesh_cache = folder("SUNDER_MESHES", SUNDER_SOURCE_DIR "/build/meshes")};
 }
 
-Scene load_scene(const std::filesystem::path& file, const AssetPaths& assets) {
+namespace {
+
+Scene read_scene(const std::filesystem::path& file, const toml::table& document, const AssetPaths& assets) {
   using namespace detail;
-  const toml::table document = parse_file(file);
   check_keys({file, document, "scene"}, top_level_keys());
   Scene scene;
   scene.file = file;
@@ -322,6 +317,25 @@ Scene load_scene(const std::filesystem::path& file, const AssetPaths& assets) {
   scene.effects = read_effects(file, document);
   read_optional<Outputs>(file, document, "output", kOutputKeys, scene.outputs);
   return scene;
+}
+
+}  // namespace
+
+Scene load_scene(const std::filesystem::path& file, const AssetPaths& assets, const std::vector<Override>& overrides) {
+  toml::table document = detail::parse_file(file);
+  if (overrides.empty()) return read_scene(file, document, assets);
+  std::string list;
+  for (const Override& change : overrides) {
+    detail::apply(change, file, document);
+    list.append(list.empty() ? "" : ", ").append(change.key).append(" = ").append(change.value);
+  }
+  try {
+    Scene scene = read_scene(file, document, assets);
+    scene.overrides = overrides;
+    return scene;
+  } catch (const Error& error) {
+    throw Error(error.kind(), std::string(error.what()) + " (with " + list + ")");
+  }
 }
 
 }  // namespace sunder::pipeline

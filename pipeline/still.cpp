@@ -142,6 +142,12 @@ struct Asked {
   }
 };
 
+double impulse_of(const FractureOptions& options, const geometry::TriangleMesh& mesh, const Material& material) {
+  if (options.severity == 0) return options.impulse;
+  const double volume = geometry::mass_properties(mesh).volume;
+  return options.severity * breaking_impulse(material.density * volume, volume, material, options.speed);
+}
+
 FractureInput fracture_input(const FractureOptions& options, const geometry::TriangleMesh& mesh,
                              const Material& material, Report& report) {
   const Material ball = find_material(impactor);
@@ -150,7 +156,7 @@ FractureInput fracture_input(const FractureOptions& options, const geometry::Tri
   if (target.distance > far_off * geometry::bounds(mesh).diagonal().norm())
     report.notes.push_back("--at lies " + std::to_string(target.distance) +
                            " m off the surface; the nearest point of the surface was hit (are the units right?)");
-  const double mass = options.impulse / options.speed;
+  const double mass = impulse_of(options, mesh, material) / options.speed;
   mpm::Load load;
   load.point = target.point;
   load.outward = options.direction ? (-options.direction->normalized()).eval() : normal;
@@ -178,15 +184,22 @@ void add_fallbacks(Report& report, const Fallbacks& fallbacks) {
   for (const auto& [name, count] : fallbacks) report.fallbacks[name] += count;
 }
 
+StillImpact impact_of(const mpm::Load& load, double mass) {
+  return {load.point, -load.outward, mass * load.approach_speed, load.approach_speed,
+          mass * load.approach_speed * load.approach_speed / 2};
+}
+
 /// What an impact does, with the record of its solve.
-Cracked hit(const FractureOptions& options, const geometry::TriangleMesh& mesh, const SceneBody& body, Report& report,
-            Progress& progress) {
+Cracked hit(const FractureOptions& options, const geometry::TriangleMesh& mesh, const SceneBody& body,
+            StillResult& result, Progress& progress) {
+  Report& report = result.report;
   const Asked asked(options, body, options.quality, geometry::bounds(mesh));
   const FractureInput input = as_asked(fracture_input(options, mesh, body.material, report), asked.scene, asked.plan);
+  result.impact = impact_of(input.loads.front(), input.partners.front().mass);
   FractureOutcome outcome = fracture(input, progress);
   FractureRecord record = record_of(input, outcome);
   record.body = body.name;
-  record.impulse = options.impulse;
+  record.impulse = result.impact->impulse;
   record.fragments = outcome.pieces.size() > 1 ? static_cast<int>(outcome.pieces.size()) : 0;
   add_fallbacks(report, outcome.fallbacks);
   const std::vector<std::string>& troubles = outcome.cracked.troubles;
@@ -202,7 +215,6 @@ Cracked hit(const FractureOptions& options, const geometry::TriangleMesh& mesh, 
   report.extract = record_of(outcome.cracked.extraction);
   report.extract->points = record.particles;
   report.extract->point_spacing = outcome.own->samples.spacing;
-  write_crack_surface(outcome.cracked.extraction, options.out / "cracks.ply");
   return std::move(outcome.cracked);
 }
 
@@ -258,24 +270,44 @@ crack::DamageField damage_field(const ExtractOptions& options, const geometry::T
 
 }  // namespace
 
+StillBody load_still_body(const FractureOptions& options) {
+  StillBody still{body_of(options), {}};
+  still.body.material = find_material(options.material);
+  if (options.cells == 0 && !still.body.material.breakable)
+    throw Error(ErrorKind::usage, "material '" + options.material + "' does not break");
+  still.source = body_mesh(still.body);
+  return still;
+}
+
+double breaking_impulse(double mass, double volume, const Material& material, double speed) {
+  // p = sqrt(2 m E) with the reduced mass m = mass b / (mass + b) of the impactor's mass b = p / speed, solved for p.
+  const double energy = material.fracture_energy * std::pow(volume, 2.0 / 3);
+  return speed / 2 * (std::sqrt(mass * mass + 8 * energy * mass / (speed * speed)) - mass);
+}
+
+StillResult break_still_body(const StillBody& still, const FractureOptions& options, Progress& progress) {
+  const bool hits = options.at && (options.impulse > 0 || options.severity > 0) && options.speed > 0;
+  if (options.cells == 0 && !hits)
+    throw Error(ErrorKind::usage, "a hit needs --at, and a positive --impulse and --speed");
+  StillResult result;
+  result.report = report_of(options, still.body.name);
+  note_source(result.report, still.body, still.source);
+  Cracked cracked = options.cells > 0 ? shatter(options, still.source.mesh, still.body, result.report, progress)
+                                      : hit(options, still.source.mesh, still.body, result, progress);
+  result.sequence = still_sequence(still.body, still.source, cracked, still.body.material.density);
+  result.cracks = std::move(cracked.extraction);
+  return result;
+}
+
 StillResult fracture_mesh(const FractureOptions& options, Progress& progress) {
   StillResult result;
   double total = 0;
   {
     const Stopwatch watch(total);
-    if (options.cells == 0 && !(options.at && options.impulse > 0 && options.speed > 0))
-      throw Error(ErrorKind::usage, "a hit needs --at, and a positive --impulse and --speed");
-    SceneBody body = body_of(options);
-    body.material = find_material(options.material);
-    if (options.cells == 0 && !body.material.breakable)
-      throw Error(ErrorKind::usage, "material '" + options.material + "' does not break");
-    const BodyMesh source = body_mesh(body);
+    const StillBody body = load_still_body(options);
     output::create_folder(options.out);
-    result.report = report_of(options, body.name);
-    note_source(result.report, body, source);
-    const Cracked cracked = options.cells > 0 ? shatter(options, source.mesh, body, result.report, progress)
-                                              : hit(options, source.mesh, body, result.report, progress);
-    result.sequence = still_sequence(body, source, cracked, body.material.density);
+    result = break_still_body(body, options, progress);
+    if (options.cells == 0) write_crack_surface(result.cracks, options.out / "cracks.ply");
     write_pieces(result.sequence, options.out, result.report.seconds.write);
   }
   finish(result, options.out, total);

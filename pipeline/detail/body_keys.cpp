@@ -56,10 +56,8 @@ void read_mesh(const Value& value, BodyDraft& draft) {
 }
 
 void read_unit(const Value& value, BodyDraft& draft) {
-  constexpr std::array<std::pair<std::string_view, double>, 5> kMetres = {
-      {{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}}};
   if (!draft.from_file()) value.fail("only a mesh file has a unit; mesh '" + draft.body.mesh.name + "' has none");
-  draft.body.mesh.load.metres_per_unit = value.word<double>(kMetres);
+  draft.body.mesh.load.metres_per_unit = read_unit_length(value);
 }
 
 void read_up(const Value& value, BodyDraft& draft) {

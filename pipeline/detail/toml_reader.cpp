@@ -171,6 +171,20 @@ Vec3 Value::positive_vector() const {
   return result;
 }
 
+std::vector<Value> Value::list() const {
+  const toml::array* array = node_->as_array();
+  if (!array) fail_type("a list");
+  std::vector<Value> values;
+  for (const toml::node& node : *array) values.emplace_back(*file_, node, subject_);
+  return values;
+}
+
+Section Value::section() const {
+  const toml::table* table = node_->as_table();
+  if (!table) fail_type("a table");
+  return {*file_, *table, subject_};
+}
+
 std::vector<Section> Value::tables() const {
   const toml::array* array = node_->as_array();
   if (!array || !array->is_array_of_tables()) fail_type("an array of tables [{ ... }, ...]");

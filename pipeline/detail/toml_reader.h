@@ -44,6 +44,9 @@ class Value {
   bool is_text() const { return node_->is_string(); }
   bool is_integer() const { return node_->is_integer(); }
   bool is_flag() const { return node_->is_boolean(); }
+  bool is_list() const { return node_->is_array(); }
+  bool is_table() const { return node_->is_table(); }
+  const toml::node& node() const { return *node_; }
   /// "expected three numbers, found a string".
   [[noreturn]] void fail_type(std::string_view expected) const;
 
@@ -56,6 +59,8 @@ class Value {
   double within(double low, double high) const;  ///< closed interval
   Vec3 vector() const;                           ///< three finite numbers
   Vec3 positive_vector() const;
+  std::vector<Value> list() const;      ///< of an array
+  Section section() const;              ///< of a table
   std::vector<Section> tables() const;  ///< of an array of tables; messages number them from 1
 
   /// One of the named choices.
@@ -104,6 +109,8 @@ struct Section {
   /// Fails at the line of `key` if it is there, at the section's otherwise.
   [[noreturn]] void fail_at(std::string_view key, const std::string& message) const;
   bool has(std::string_view key) const { return table.contains(key); }
+  /// Of a key that is there.
+  Value value(std::string_view key) const { return {file, *table.get(key), name + ": " + std::string(key)}; }
 };
 
 /// Throws for a key of the section that is not among `known`.

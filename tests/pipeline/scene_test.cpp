@@ -88,6 +88,46 @@ TEST_F(SceneTest, FillsInDefaults) {
   EXPECT_TRUE(body.breakable);
 }
 
+TEST_F(SceneTest, OverridesWinOverTheFile) {
+  const fs::path file =
+      write("scene.toml", kBall + "velocity = [0, 1, 0]\n[scene]\nseed = 3\n[material.own]\nbase = \"glass\"\n");
+  const Scene scene = load_scene(file, assets_,
+                                 {{"body.ball.velocity", "[0, -5, 0]"},
+                                  {"scene.seed", "7"},
+                                  {"fracture.spline", "\"cubic\""},
+                                  {"material.own.tensile_strength", "1e6"},
+                                  {"body.ball.material", "\"own\""}});
+  EXPECT_EQ(scene.bodies[0].velocity, Vec3(0, -5, 0));
+  EXPECT_EQ(scene.seed, 7u);
+  EXPECT_EQ(scene.fracture.spline, mpm::Spline::cubic);
+  EXPECT_EQ(scene.bodies[0].material.tensile_strength, 1e6);
+  EXPECT_EQ(scene.overrides.size(), 5u);
+}
+
+TEST_F(SceneTest, OverridesOfWhatIsNotThereAreRefused) {
+  const fs::path file = write("scene.toml", kBall);
+  const auto message = [&](const Override& change) -> std::string {
+    try {
+      load_scene(file, assets_, {change});
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::usage);
+      return error.what();
+    }
+    return "accepted";
+  };
+  const std::vector<std::pair<Override, std::string>> bad = {
+      {{"body.bal.velocity", "[0, 0, 0]"}, "did you mean 'ball'"},
+      {{"body.ball.velocty", "[0, 0, 0]"}, "did you mean 'velocity'"},
+      {{"body.ball.velocity", "7"}, "(with body.ball.velocity = 7)"},
+      {{"body.ball.material", "glass"}, "texts need quotes"},
+      {{"body.velocity", "[0, 0, 0]"}, "no key of a scene"},
+      {{"seed", "1"}, "no key of a scene"},
+      {{"material.own.density", "1"}, "has no material 'own'"},
+      {{"secne.seed", "1"}, "did you mean 'scene'"}};
+  for (const auto& [change, says] : bad)
+    EXPECT_NE(message(change).find(says), std::string::npos) << change.key << ": " << message(change);
+}
+
 TEST_F(SceneTest, ReadsPathsOfDrivenBodies) {
   const Scene scene = load(kBall +
                            "motion = 'kinematic'\nminimum_impulse = 0.5\n"

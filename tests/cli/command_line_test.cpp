@@ -1,5 +1,5 @@
 /// The exit codes that README.md promises.
-#include "pipeline/command_line.h"
+#include "cli/command_line.h"
 
 #include <filesystem>
 #include <fstream>
@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace sunder::pipeline {
+namespace sunder::cli {
 namespace {
 
 namespace fs = std::filesystem;
@@ -153,4 +153,4 @@ TEST_F(CommandLine, AValidationProblemRunsAndWritesJson) {
 }
 
 }  // namespace
-}  // namespace sunder::pipeline
+}  // namespace sunder::cli

@@ -1,4 +1,4 @@
-#include "pipeline/command_line.h"
+#include "cli/command_line.h"
 
 #include <iostream>
 #include <optional>
@@ -6,6 +6,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "batch/batch.h"
+#include "batch/page.h"
 #include "geometry/load.h"
 #include "pipeline/accuracy.h"
 #include "pipeline/inspect_command.h"
@@ -16,14 +18,19 @@
 #include "pipeline/validate.h"
 #include "sunder_version.h"
 
-namespace sunder::pipeline {
+namespace sunder::cli {
 namespace {
+
+using namespace pipeline;
 
 const std::map<std::string, geometry::UpAxis> axes = {
     {"x", geometry::UpAxis::x}, {"y", geometry::UpAxis::y}, {"z", geometry::UpAxis::z}};
 const std::map<std::string, LogFormat> log_words = {{"text", LogFormat::text}, {"json", LogFormat::json}};
 const std::map<std::string, ProgressFormat> progress_words = {
     {"auto", ProgressFormat::by_log}, {"openjd", ProgressFormat::openjd}, {"off", ProgressFormat::off}};
+
+const std::map<std::string, batch::Engine> engine_words = {{"local", batch::Engine::local},
+                                                           {"slurm", batch::Engine::slurm}};
 
 int validate_command(const ValidateOptions& options) {
   const auto progress = make_progress_display({});
@@ -70,9 +77,10 @@ int fracture_command(StillArguments& arguments, const LogSettings& log) {
   FractureOptions& options = arguments.fracture;
   options.at = vector_of(arguments.at);
   options.direction = vector_of(arguments.direction);
-  if (options.cells == 0 && !(options.at && options.impulse > 0))
-    throw Error(ErrorKind::usage,
-                "fracture needs --at x,y,z and --impulse N*s, or --cells N for a shatter without physics");
+  if (options.cells == 0 && !(options.at && (options.impulse > 0 || options.severity > 0)))
+    throw Error(
+        ErrorKind::usage,
+        "fracture needs --at x,y,z and --impulse N*s or --severity, or --cells N for a shatter without physics");
   if (options.direction && !(options.direction->norm() > 0)) throw Error(ErrorKind::usage, "--direction has no length");
   options.out =
       arguments.out.empty() ? std::filesystem::path("out") / options.mesh.stem() : std::filesystem::path(arguments.out);
@@ -144,8 +152,11 @@ void add_fracture(CLI::App& app, StillArguments& arguments) {
   app.add_option("--at", arguments.at, "Where it is hit: x,y,z [m], the nearest point of the surface")
       ->delimiter(',')
       ->expected(3);
-  app.add_option("--impulse", options.impulse, "Momentum of the impactor, a steel ball [N s]")
-      ->check(CLI::PositiveNumber);
+  auto* impulse = app.add_option("--impulse", options.impulse, "Momentum of the impactor, a steel ball [N s]")
+                      ->check(CLI::PositiveNumber);
+  app.add_option("--severity", options.severity, "Instead of --impulse, as a multiple of what could open one crack")
+      ->check(CLI::PositiveNumber)
+      ->excludes(impulse);
   app.add_option("--speed", options.speed, "Speed of the impactor [m/s]")->check(CLI::PositiveNumber);
   app.add_option("--direction", arguments.direction, "x,y,z in which it flies (default: against the surface)")
       ->delimiter(',')
@@ -169,6 +180,20 @@ void add_extract(CLI::App& app, StillArguments& arguments) {
   add_still_options(app, options, arguments.out);
 }
 
+void add_overrides(CLI::App& app, std::vector<Override>& overrides) {
+  const auto read = [&overrides](const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) {
+      const std::size_t at = text.find('=');
+      if (at == std::string::npos || at == 0) throw CLI::ValidationError("--set", text + " is not KEY=VALUE");
+      overrides.push_back({text.substr(0, at), text.substr(at + 1)});
+    }
+  };
+  app.add_option_function<std::vector<std::string>>(
+         "--set", read, "KEY=VALUE in place of the scene's, the value as in TOML: body.cup.velocity=[0,-5,0]")
+      ->take_all()
+      ->allow_extra_args(false);
+}
+
 void add_run(CLI::App& app, RunArguments& arguments, LogSettings& log) {
   app.add_option("scene", arguments.scene, "Scene file (TOML)")->required();
   app.add_option("--out", arguments.out, "Folder for the results (default: out/<scene>)");
@@ -179,12 +204,40 @@ void add_run(CLI::App& app, RunArguments& arguments, LogSettings& log) {
                "Leave out the pilot that predicts what the run takes, for the report");
   app.add_flag("--resume", arguments.resume, "Go on where a run into the same folder was stopped");
   app.add_option("--seed", arguments.seed, "Overrides the scene's seed");
+  add_overrides(app, arguments.overrides);
   app.add_option("--frames", arguments.frames,
                  "A-B or B: end with frame B; files that come one a frame are written from A on");
   app.add_flag("--dry-run", arguments.dry_run, "Check all, say what would run and be written, and stop");
   app.add_option("--log", log.format, "What happens as text or json")->transform(CLI::CheckedTransformer(log_words));
   app.add_option("--progress", log.progress, "auto (a bar, or as the log), openjd (Open Job Description), off")
       ->transform(CLI::CheckedTransformer(progress_words));
+}
+
+void add_batch(CLI::App& app, batch::BatchOptions& options, LogSettings& log) {
+  app.add_option("plan", options.plan, "Plan file (TOML)")->required();
+  app.add_option("--out", options.out, "Folder for the results (default: out/<plan>)");
+  app.add_option("--workers", options.workers, "Jobs side by side (default: as many as processors and memory allow)")
+      ->check(CLI::Range(1, 4096));
+  app.add_option("--threads", options.threads, "Threads of one job (default: 1)")->check(CLI::Range(1, 1024));
+  app.add_option("--jobs", options.jobs, "A-B: only these, without a manifest");
+  app.add_flag("--dry-run", options.dry_run, "List the jobs, say what they will take, and stop");
+  app.add_flag("--retry", options.retry, "Do jobs again that failed");
+  app.add_flag("--yes", options.yes, "Also a very large number of jobs");
+  auto* collect = app.add_flag("--collect", options.collect, "Only write the manifest of what is there");
+  app.add_flag("--status", options.status, "Only say how far it is")->excludes(collect);
+  app.add_option("--engine", options.engine, "local, or slurm: arrays of tasks on a cluster")
+      ->transform(CLI::CheckedTransformer(engine_words));
+  app.add_flag("--print-script", options.print_script, "Of slurm: print what would be submitted, and stop");
+  app.add_option("--task-minutes", options.task_minutes, "Of slurm: how long a task should last")
+      ->check(CLI::Range(0.0001, 10000.0));
+  app.add_option("--tasks-at-once", options.tasks_at_once, "Of slurm: at most so many")->check(CLI::PositiveNumber);
+  app.add_option("--progress", log.progress, "auto (a bar, or lines), openjd (Open Job Description), off")
+      ->transform(CLI::CheckedTransformer(progress_words));
+}
+
+int batch_command(const batch::BatchOptions& options, const LogSettings& log) {
+  const auto progress = make_progress_display(log);
+  return batch::batch(options, *progress);
 }
 
 int dispatch(int argc, char** argv, LogSettings& log) {
@@ -203,6 +256,7 @@ int dispatch(int argc, char** argv, LogSettings& log) {
   check_app->add_option("scene", check.scene, "Scene file (TOML)")->required();
   add_quality(*check_app, check.quality, "; overrides the scene");
   add_time_budget(*check_app, check.time_budget);
+  add_overrides(*check_app, check.overrides);
   check_app->add_option("--threads", check.threads, "Threads of the run (default: all)")->check(CLI::Range(1, 1024));
   check_app->add_flag("--json", check.json, "Say it as JSON");
   auto* inspect_app = app.add_subcommand("inspect", "Say whether a mesh is a closed solid, and what is wrong with it");
@@ -215,8 +269,14 @@ int dispatch(int argc, char** argv, LogSettings& log) {
   auto* extract_app = app.add_subcommand("extract", "Crack surfaces and fragments from any cloud of damaged points");
   add_extract(*extract_app, still);
 
+  batch::BatchOptions batch_options;
+  auto* batch_app =
+      app.add_subcommand("batch", "Many fractures or scenes: a plan file names what is broken and what varies");
+  add_batch(*batch_app, batch_options, log);
+
   std::string report_folder;
-  auto* report_app = app.add_subcommand("report", "Write the report page of a run anew, from the files in its folder");
+  auto* report_app =
+      app.add_subcommand("report", "Write the report page of a run or a batch anew, from the files in its folder");
   report_app->add_option("folder", report_folder, "Folder of the results")->required();
 
   AccuracyOptions accuracy;
@@ -254,6 +314,12 @@ int dispatch(int argc, char** argv, LogSettings& log) {
   if (*check_app) return check_command(check);
   if (*fracture_app) return fracture_command(still, log);
   if (*extract_app) return extract_command(still, log);
+  if (*batch_app) return batch_command(batch_options, log);
+  if (*report_app && batch::is_batch(report_folder)) {
+    batch::write_batch_page(report_folder);
+    std::cout << "written to " << (std::filesystem::path(report_folder) / "index.html").string() << std::endl;
+    return 0;
+  }
   if (*report_app) return report_command(report_folder);
   if (*accuracy_app) return accuracy_command(accuracy);
   if (*validate_app) return validate_command(validate_options);
@@ -283,4 +349,4 @@ int command_line(int argc, char** argv) {
   }
 }
 
-}  // namespace sunder::pipeline
+}  // namespace sunder::cli
