@@ -26,7 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr output::PosterSettings still_settings{.width = 320, .height = 240, .samples = 1, .fill = 0.85};
+constexpr output::PosterSettings still_settings{.width = 320, .height = 240, .samples = 4, .fill = 0.85};
 constexpr double opening = 0.35;  // of a still: how far pieces are moved apart, over their distance from the middle
 
 Json json_of(const Vec3& x) { return {x.x(), x.y(), x.z()}; }
