@@ -127,7 +127,7 @@ TEST_F(Batch, AJobThatTakesTooLongFails) {
 
 /// A job of some seconds, to be disturbed.
 const std::string long_job =
-    "[job]\nmesh = \"block.obj\"\nimpact = \"random\"\nseverity = 50\nquality = 100000\nseed = [1, 2, 3]\n";
+    "[job]\nmesh = \"block.obj\"\nimpact = \"random\"\nseverity = 50\nquality = 40000\nseed = [1, 2, 3]\n";
 
 pid_t started(const std::string& command) {
   const pid_t child = fork();
