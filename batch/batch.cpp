@@ -14,6 +14,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include "batch/detail/duration.h"
 #include "batch/forecast.h"
 #include "batch/manifest.h"
 #include "batch/page.h"
@@ -22,7 +23,7 @@
 #include "core/error.h"
 #include "core/resources.h"
 #include "output/atomic_file.h"
-#include "sunder_version.h"
+#include "pipeline/version.h"
 
 namespace sunder::batch {
 namespace {
@@ -32,8 +33,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t most_listed = 20;  // jobs of a dry run
 constexpr double memory_share = 0.8;     // of what is free, for all workers together
-
-const std::string build = std::string(SUNDER_VERSION) + " (" + SUNDER_GIT + ")";
 
 /// Keeps other batches out of a folder while it lives. Tasks of a cluster share it.
 class FolderLock {
@@ -61,6 +60,7 @@ std::string file_text(const fs::path& file) {
 
 /// Results of two builds are not to be mixed up.
 void require_same_build(const fs::path& out) {
+  const std::string build = pipeline::build_name();
   const fs::path file = out / "batch.json";
   std::ifstream in(file);
   if (!in) {
@@ -130,17 +130,6 @@ std::string text_of(const Job& job) {
   return text;
 }
 
-std::string duration(double seconds) {
-  char text[48];
-  if (seconds < 90)
-    std::snprintf(text, sizeof text, "%.2g s", seconds);
-  else if (seconds < 5400)
-    std::snprintf(text, sizeof text, "%.0f min", seconds / 60);
-  else
-    std::snprintf(text, sizeof text, "%.1f h", seconds / 3600);
-  return text;
-}
-
 int workers_of(const BatchOptions& options) {
   if (options.workers > 0) return options.workers;
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / options.threads);
@@ -152,12 +141,12 @@ void say_forecast(const BatchOptions& options, const JobForecast& forecast, doub
     return;
   }
   const int workers = workers_of(options);
-  std::cout << "a job takes about " << duration(forecast.seconds) << " of processor time and "
+  std::cout << "a job takes about " << detail::duration(forecast.seconds) << " of processor time and "
             << std::lround(forecast.memory_mb) << " MB";
   if (forecast.bytes > 0) std::cout << ", and leaves " << std::lround(forecast.bytes / 1000) << " kB";
   std::cout << " (" << forecast.tried << " tried)\n"
-            << "all of them " << duration(forecast.seconds * jobs) << ", "
-            << duration(forecast.seconds * jobs / workers) << " with " << workers << " side by side";
+            << "all of them " << detail::duration(forecast.seconds * jobs) << ", "
+            << detail::duration(forecast.seconds * jobs / workers) << " with " << workers << " side by side";
   if (forecast.bytes > 0) std::cout << "; " << std::ceil(forecast.bytes * jobs / 1e6) << " MB on disk";
   std::cout << std::endl;
 }

@@ -6,10 +6,11 @@
 #include <unistd.h>
 
 #include "batch/detail/database.h"
+#include "batch/detail/parameters_json.h"
 #include "batch/results.h"
 #include "core/error.h"
 #include "output/atomic_file.h"
-#include "sunder_version.h"
+#include "pipeline/version.h"
 
 namespace sunder::batch {
 namespace {
@@ -85,9 +86,7 @@ Json line_of(const Job& job, const Results& results) {
   Json result = read_json(folder / "result.json");
   if (!result.is_object()) {
     line["outcome"] = "missing";
-    Json parameters = Json::object();
-    for (const Parameter& parameter : job.parameters) parameters[parameter.name] = Json::parse(parameter.value);
-    line["parameters"] = std::move(parameters);
+    line["parameters"] = detail::parameters_json(job);
     return line;
   }
   for (auto& [key, value] : result.items()) line[key] = std::move(value);
@@ -177,7 +176,7 @@ class Writer {
     row.bind(std::string("jobs")).bind(static_cast<std::int64_t>(plan.size())).run();
     row.bind(std::string("samples")).bind(static_cast<std::int64_t>(plan.samples)).run();
     row.bind(std::string("seed")).bind(static_cast<std::int64_t>(plan.seed)).run();
-    row.bind(std::string("build")).bind(std::string(SUNDER_VERSION) + " (" + SUNDER_GIT + ")").run();
+    row.bind(std::string("build")).bind(pipeline::build_name()).run();
     Json axes = Json::array();
     for (const Axis& axis : plan.axes)
       if (axis.kind != Axis::Kind::grid || axis.values.size() > 1) axes.push_back(axis.name);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "batch/detail/database.h"
+#include "batch/detail/duration.h"
 #include "output/atomic_file.h"
 #include "output/chart.h"
 #include "output/plain_page.h"
@@ -31,12 +32,6 @@ std::string formatted(const char* format, auto... values) {
   char text[400];
   std::snprintf(text, sizeof text, format, values...);
   return text;
-}
-
-std::string duration(double seconds) {
-  if (seconds < 120) return formatted("%.1f s", seconds);
-  if (seconds < 7200) return formatted("%.1f min", seconds / 60);
-  return formatted("%.1f h", seconds / 3600);
 }
 
 /// One value of one row.
@@ -85,7 +80,7 @@ std::string overview(Database& database) {
             (outcome == "whole" ? "stayed whole" : outcome) + "</span>";
   }
   text += formatted("; %.0f fragments.", number("SELECT sum(fragments) FROM job"));
-  text += " Processor time " + duration(processor);
+  text += " Processor time " + detail::duration(processor);
   if (done > 0)
     text += formatted(", %.2f s a job (%.0f jobs in a core-hour)", processor / done, 3600 * done / processor);
   text += formatted("; %.1f MB on disk", number("SELECT sum(bytes) FROM file") / 1e6);

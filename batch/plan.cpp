@@ -1,9 +1,7 @@
 #include "batch/plan.h"
 
 #include <cmath>
-#include <fstream>
 #include <limits>
-#include <sstream>
 
 #include <nlohmann/json.hpp>
 
@@ -15,15 +13,7 @@
 namespace sunder::batch {
 namespace {
 
-namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-void add_file(Hash& hash, const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  hash.add(in ? text.str() : "missing");
-}
 
 std::uint64_t stream_of(const std::string& name) {
   Hash hash;
@@ -107,8 +97,8 @@ const std::string& Plan::content_of(const std::string& subject) const {
   if (found && mode == Mode::run && found->extension() == ".toml") {
     hash.add(pipeline::fingerprint(pipeline::load_scene(*found)));
   } else {
-    if (found) add_file(hash, *found);
-    add_file(hash, pipeline::default_assets().materials);
+    if (found) hash.add_file(*found);
+    hash.add_file(pipeline::default_assets().materials);
   }
   return known->second = hash.digits();
 }

@@ -11,6 +11,7 @@
 
 #include "batch/detail/job_keys.h"
 #include "batch/plan.h"
+#include "pipeline/detail/quality_words.h"
 #include "pipeline/detail/toml_reader.h"
 
 namespace sunder::batch {
@@ -55,8 +56,7 @@ void read_time_limit(const Value& value, Plan& plan) {
 
 constexpr std::array<Key<Plan>, 6> kPlanKeys = {{
     {"mode", read_mode},
-    {"seed",
-     [](const Value& value, Plan& plan) { plan.seed = static_cast<std::uint64_t>(value.integer(0, most_samples)); }},
+    {"seed", [](const Value& value, Plan& plan) { plan.seed = pipeline::detail::read_seed_value(value); }},
     {"samples",
      [](const Value& value, Plan& plan) { plan.samples = static_cast<std::uint64_t>(value.integer(1, most_samples)); }},
     {"job_time_limit", read_time_limit},

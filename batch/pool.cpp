@@ -19,6 +19,8 @@
 #include <tbb/global_control.h>
 #include <unistd.h>
 
+#include "core/child_process.h"
+
 namespace sunder::batch {
 namespace {
 
@@ -34,35 +36,34 @@ struct Answer {
   std::array<char, 512> message;  ///< of cannot_write
 };
 
-bool send(int file, const void* data, std::size_t count) {
-  const char* at = static_cast<const char*>(data);
+/// `call` is read or write, which may do a part at a time. False when the other end is gone.
+template <typename Call, typename Byte>
+bool transfer(Call call, int file, Byte* at, std::size_t count) {
   while (count > 0) {
-    const ssize_t sent = write(file, at, count);
-    if (sent < 0 && errno == EINTR) continue;
-    if (sent <= 0) return false;
-    at += sent;
-    count -= static_cast<std::size_t>(sent);
+    const ssize_t done = call(file, at, count);
+    if (done < 0 && errno == EINTR) continue;
+    if (done <= 0) return false;
+    at += done;
+    count -= static_cast<std::size_t>(done);
   }
   return true;
 }
 
-bool receive(int file, void* data, std::size_t count) {
-  char* at = static_cast<char*>(data);
-  while (count > 0) {
-    const ssize_t got = read(file, at, count);
-    if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) return false;
-    at += got;
-    count -= static_cast<std::size_t>(got);
-  }
-  return true;
+template <typename Message>
+bool send(int file, const Message& message) {
+  return transfer(write, file, reinterpret_cast<const char*>(&message), sizeof message);
+}
+
+template <typename Message>
+bool receive(int file, Message& message) {
+  return transfer(read, file, reinterpret_cast<char*>(&message), sizeof message);
 }
 
 [[noreturn]] void be_worker(const Plan& plan, const std::filesystem::path& out, int threads, int orders, int answers) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   Worker worker(plan, out);
   std::uint64_t index = 0;
-  while (receive(orders, &index, sizeof index)) {
+  while (receive(orders, index)) {
     Answer answer{Answer::done, 0, 0, {}};
     try {
       const JobEnd end = worker.work(plan.job(index));
@@ -73,7 +74,7 @@ bool receive(int file, void* data, std::size_t count) {
       answer.kind = Answer::cannot_write;
       std::strncpy(answer.message.data(), error.what(), answer.message.size() - 1);
     }
-    if (!send(answers, &answer, sizeof answer)) break;
+    if (!send(answers, answer)) break;
   }
   _exit(0);
 }
@@ -117,7 +118,7 @@ class Hand {
   bool give(std::uint64_t job) {
     job_ = job;
     since_ = Clock::now();
-    return send(orders_, &job, sizeof job);
+    return send(orders_, job);
   }
   std::optional<std::uint64_t> job() const { return job_; }
   double seconds() const { return std::chrono::duration<double>(Clock::now() - since_).count(); }
@@ -126,19 +127,14 @@ class Hand {
   /// Not set: the process is dead.
   std::optional<Answer> answer() {
     Answer answer;
-    if (!receive(answers_, &answer, sizeof answer)) return {};
+    if (!receive(answers_, answer)) return {};
     job_.reset();
     return answer;
   }
 
   /// How it died, after answer() found that it did.
   std::string end() {
-    const int status = wait();
-    std::string how = "ended with code " + std::to_string(WEXITSTATUS(status));
-    if (WIFSIGNALED(status)) {
-      how = std::string("crashed (") + strsignal(WTERMSIG(status)) + ")";
-      if (WTERMSIG(status) == SIGKILL) how = "was killed, as systems do that run out of memory";
-    }
+    const std::string how = ending_of(wait());
     const std::string words = said();
     return "the process " + how + (words.empty() ? "" : "; it said: " + words);
   }

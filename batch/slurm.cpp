@@ -71,7 +71,8 @@ fs::path own_program() { return fs::read_symlink("/proc/self/exe"); }
 std::string environment_lines() {
   std::string lines;
   for (const char* name : {"SUNDER_ASSETS", "SUNDER_MESHES"})
-    if (const char* value = std::getenv(name)) lines.append("export ").append(name).append("=").append(quoted(value)).append("\n");
+    if (const char* value = std::getenv(name))
+      lines.append("export ").append(name).append("=").append(quoted(value)).append("\n");
   return lines;
 }
 

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "batch/detail/job_keys.h"
+#include "batch/detail/parameters_json.h"
 #include "core/hash.h"
 #include "core/resources.h"
 #include "core/stopwatch.h"
@@ -16,9 +17,10 @@
 #include "output/poster.h"
 #include "output/writers.h"
 #include "pipeline/crack_writer.h"
+#include "pipeline/fragment_statistics.h"
 #include "pipeline/random_impact.h"
 #include "pipeline/run.h"
-#include "sunder_version.h"
+#include "pipeline/version.h"
 
 namespace sunder::batch {
 namespace {
@@ -31,16 +33,8 @@ constexpr double opening = 0.35;  // of a still: how far pieces are moved apart,
 
 Json json_of(const Vec3& x) { return {x.x(), x.y(), x.z()}; }
 
-Json parameters_json(const Job& job) {
-  Json parameters = Json::object();
-  for (const Parameter& parameter : job.parameters) parameters[parameter.name] = Json::parse(parameter.value);
-  return parameters;
-}
-
 Json head_of(const Job& job) {
-  return {{"id", job.id},
-          {"build", std::string(SUNDER_VERSION) + " (" + SUNDER_GIT + ")"},
-          {"parameters", parameters_json(job)}};
+  return {{"id", job.id}, {"build", pipeline::build_name()}, {"parameters", detail::parameters_json(job)}};
 }
 
 /// Files of the folder, in the order of their names.
@@ -67,14 +61,12 @@ std::vector<const output::Piece*> last_pieces(const output::Sequence& sequence) 
 
 void add_pieces(Json& result, const output::Sequence& sequence, const pipeline::Report& report) {
   Json list = Json::array();
-  double volume = 0, largest = 0, inside_area = 0;
-  int fragments = 0;
+  std::vector<double> volumes;
+  double inside_area = 0;
   for (const output::Piece* piece : last_pieces(sequence)) {
     inside_area += piece->inside_area;
     if (piece->parent < 0) continue;
-    ++fragments;
-    volume += piece->volume;
-    largest = std::max(largest, piece->volume);
+    volumes.push_back(piece->volume);
     list.push_back({{"name", piece->name},
                     {"volume", piece->volume},
                     {"mass", piece->mass},
@@ -87,10 +79,10 @@ void add_pieces(Json& result, const output::Sequence& sequence, const pipeline::
     damaged = std::max(damaged, f.damaged_share);
     if (f.energy) work += f.energy->work;
   }
-  result["outcome"] = fragments > 0 ? "broken" : "whole";
+  result["outcome"] = !volumes.empty() ? "broken" : "whole";
   result["error"] = nullptr;
-  result["fragments"] = fragments;
-  result["largest_share"] = volume > 0 ? Json(largest / volume) : Json(1.0);
+  result["fragments"] = volumes.size();
+  result["largest_share"] = volumes.empty() ? 1.0 : pipeline::largest_share(volumes);
   result["crack_area"] = inside_area / 2;  // each crack has two sides
   result["work"] = work;
   result["damaged_share"] = damaged;

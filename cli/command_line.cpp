@@ -16,7 +16,7 @@
 #include "pipeline/scene_commands.h"
 #include "pipeline/still.h"
 #include "pipeline/validate.h"
-#include "sunder_version.h"
+#include "pipeline/version.h"
 
 namespace sunder::cli {
 namespace {
@@ -240,70 +240,81 @@ int batch_command(const batch::BatchOptions& options, const LogSettings& log) {
   return batch::batch(options, *progress);
 }
 
+void add_check(CLI::App& app, CheckArguments& check) {
+  app.add_option("scene", check.scene, "Scene file (TOML)")->required();
+  add_quality(app, check.quality, "; overrides the scene");
+  add_time_budget(app, check.time_budget);
+  add_overrides(app, check.overrides);
+  app.add_option("--threads", check.threads, "Threads of the run (default: all)")->check(CLI::Range(1, 1024));
+  app.add_flag("--json", check.json, "Say it as JSON");
+}
+
+void add_accuracy(CLI::App& app, AccuracyOptions& accuracy) {
+  app.add_option("scene", accuracy.scene, "Scene file (TOML)")->required();
+  app.add_option("--out", accuracy.out, "Folder for the results (default: out/<scene>_accuracy)");
+  app.add_option("--particles", accuracy.most_particles, "Of the finest resolution")
+      ->check(CLI::Range(Quality::least_particles, Quality::most_particles));
+  app.add_option("--seeds", accuracy.seeds, "By which the spread is measured")->check(CLI::Range(1, 100));
+  app.add_option("--hits", accuracy.hits, "How many of the hits that break bodies are studied")
+      ->check(CLI::Range(1, 1000));
+}
+
+void add_validate(CLI::App& app, ValidateOptions& options) {
+  app.add_option("--only", options.only, "Ids of the problems to run (default: all)");
+  app.add_flag("--hard", options.hard, "The hard cases instead: extreme sizes, speeds, materials, meshes and scenes");
+  app.add_option("--resolution", options.resolutions,
+                 "Resolutions at which the problem named by --only is studied: 16,32,64")
+      ->delimiter(',')
+      ->check(CLI::Range(2, 100000));
+  app.add_option("--json", options.json, "File for the results");
+  app.add_option("--svg", options.svg, "File for the overview of error against time");
+  app.add_option("--html", options.html, "File for the results as a page with charts");
+}
+
+int any_report_command(const std::filesystem::path& folder) {
+  if (!batch::is_batch(folder)) return report_command(folder);
+  batch::write_batch_page(folder);
+  std::cout << "written to " << (folder / "index.html").string() << std::endl;
+  return 0;
+}
+
 int dispatch(int argc, char** argv, LogSettings& log) {
   CLI::App app("Sunder breaks things the way they break: a scene file goes in, a shatter sequence comes out.");
-  app.set_version_flag("--version", std::string(SUNDER_VERSION) + " (" + SUNDER_GIT + ")");
+  app.set_version_flag("--version", build_name());
   app.require_subcommand(1);
 
   RunArguments run_arguments;
   auto* run_app = app.add_subcommand("run", "Simulate a scene");
   add_run(*run_app, run_arguments, log);
-
   CheckArguments check;
-  InspectOptions inspect_options;
   auto* check_app = app.add_subcommand(
       "check", "Validate a scene and its meshes, say which effects will run and what a run takes, solve nothing");
-  check_app->add_option("scene", check.scene, "Scene file (TOML)")->required();
-  add_quality(*check_app, check.quality, "; overrides the scene");
-  add_time_budget(*check_app, check.time_budget);
-  add_overrides(*check_app, check.overrides);
-  check_app->add_option("--threads", check.threads, "Threads of the run (default: all)")->check(CLI::Range(1, 1024));
-  check_app->add_flag("--json", check.json, "Say it as JSON");
+  add_check(*check_app, check);
+  InspectOptions inspect_options;
   auto* inspect_app = app.add_subcommand("inspect", "Say whether a mesh is a closed solid, and what is wrong with it");
   add_inspect(*inspect_app, inspect_options);
-
   StillArguments still;
   auto* fracture_app =
       app.add_subcommand("fracture", "Break one mesh where it stands: one hit, or a plain Voronoi shatter");
   add_fracture(*fracture_app, still);
   auto* extract_app = app.add_subcommand("extract", "Crack surfaces and fragments from any cloud of damaged points");
   add_extract(*extract_app, still);
-
   batch::BatchOptions batch_options;
   auto* batch_app =
       app.add_subcommand("batch", "Many fractures or scenes: a plan file names what is broken and what varies");
   add_batch(*batch_app, batch_options, log);
-
   std::string report_folder;
   auto* report_app =
       app.add_subcommand("report", "Write the report page of a run or a batch anew, from the files in its folder");
   report_app->add_option("folder", report_folder, "Folder of the results")->required();
-
   AccuracyOptions accuracy;
   auto* accuracy_app = app.add_subcommand(
       "accuracy", "Solve the first fracture of a scene at ever finer resolutions: what accuracy costs in time");
-  accuracy_app->add_option("scene", accuracy.scene, "Scene file (TOML)")->required();
-  accuracy_app->add_option("--out", accuracy.out, "Folder for the results (default: out/<scene>_accuracy)");
-  accuracy_app->add_option("--particles", accuracy.most_particles, "Of the finest resolution")
-      ->check(CLI::Range(Quality::least_particles, Quality::most_particles));
-  accuracy_app->add_option("--seeds", accuracy.seeds, "By which the spread is measured")->check(CLI::Range(1, 100));
-  accuracy_app->add_option("--hits", accuracy.hits, "How many of the hits that break bodies are studied")
-      ->check(CLI::Range(1, 1000));
-
+  add_accuracy(*accuracy_app, accuracy);
   ValidateOptions validate_options;
   auto* validate_app = app.add_subcommand(
       "validate", "Run the catalogue of validation problems; exit code 0 when every check holds, 1 when one fails");
-  validate_app->add_option("--only", validate_options.only, "Ids of the problems to run (default: all)");
-  validate_app->add_flag("--hard", validate_options.hard,
-                         "The hard cases instead: extreme sizes, speeds, materials, meshes and scenes");
-  validate_app
-      ->add_option("--resolution", validate_options.resolutions,
-                   "Resolutions at which the problem named by --only is studied: 16,32,64")
-      ->delimiter(',')
-      ->check(CLI::Range(2, 100000));
-  validate_app->add_option("--json", validate_options.json, "File for the results");
-  validate_app->add_option("--svg", validate_options.svg, "File for the overview of error against time");
-  validate_app->add_option("--html", validate_options.html, "File for the results as a page with charts");
+  add_validate(*validate_app, validate_options);
 
   try {
     app.parse(argc, argv);
@@ -315,12 +326,7 @@ int dispatch(int argc, char** argv, LogSettings& log) {
   if (*fracture_app) return fracture_command(still, log);
   if (*extract_app) return extract_command(still, log);
   if (*batch_app) return batch_command(batch_options, log);
-  if (*report_app && batch::is_batch(report_folder)) {
-    batch::write_batch_page(report_folder);
-    std::cout << "written to " << (std::filesystem::path(report_folder) / "index.html").string() << std::endl;
-    return 0;
-  }
-  if (*report_app) return report_command(report_folder);
+  if (*report_app) return any_report_command(report_folder);
   if (*accuracy_app) return accuracy_command(accuracy);
   if (*validate_app) return validate_command(validate_options);
   return inspect_command(inspect_options);

@@ -68,10 +68,8 @@ function(sunder_version_header)
     COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -DVERSION=${PROJECT_VERSION}
             -DOUTPUT=${PROJECT_BINARY_DIR}/generated/sunder_version.h -P ${PROJECT_SOURCE_DIR}/cmake/version.cmake
     BYPRODUCTS ${PROJECT_BINARY_DIR}/generated/sunder_version.h COMMENT "")
-  foreach(module pipeline batch cli)
-    target_include_directories(sunder_${module} PRIVATE ${PROJECT_BINARY_DIR}/generated)
-    add_dependencies(sunder_${module} sunder_version_header)
-  endforeach()
+  target_include_directories(sunder_pipeline PRIVATE ${PROJECT_BINARY_DIR}/generated)
+  add_dependencies(sunder_pipeline sunder_version_header)
 endfunction()
 
 # The pass over a block of particles once per instruction set; the best of the machine is chosen when the program runs.

@@ -88,14 +88,18 @@ int status_of(pid_t child) {
   return status;
 }
 
-[[noreturn]] void fail_by_signal(int signal) {
-  if (signal == SIGINT || signal == SIGTERM) throw Error(ErrorKind::interrupted, "interrupted");
-  if (signal == SIGXCPU) throw ChildFailed("took too long");
-  if (signal == SIGKILL) throw ChildFailed("was killed, as systems do that run out of memory");
-  throw ChildFailed(std::string("crashed (") + strsignal(signal) + ")");
+bool was_interrupted(int status) {
+  return WIFSIGNALED(status) && (WTERMSIG(status) == SIGINT || WTERMSIG(status) == SIGTERM);
 }
 
 }  // namespace
+
+std::string ending_of(int status) {
+  if (!WIFSIGNALED(status)) return "ended with code " + std::to_string(WEXITSTATUS(status));
+  if (WTERMSIG(status) == SIGXCPU) return "took too long";
+  if (WTERMSIG(status) == SIGKILL) return "was killed, as systems do that run out of memory";
+  return std::string("crashed (") + strsignal(WTERMSIG(status)) + ")";
+}
 
 std::string in_child_process(const std::function<std::string()>& work, double processor_seconds) {
   Letter letter;
@@ -103,11 +107,9 @@ std::string in_child_process(const std::function<std::string()>& work, double pr
   if (child < 0) return work();
   if (child == 0) be_child(letter, work, processor_seconds);
   const int status = status_of(child);
-  if (WIFSIGNALED(status)) fail_by_signal(WTERMSIG(status));
+  if (was_interrupted(status)) throw Error(ErrorKind::interrupted, "interrupted");
   std::string bytes = letter.read();
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || bytes.empty()) {
-    throw ChildFailed("ended with code " + std::to_string(WEXITSTATUS(status)));
-  }
+  if (status != 0 || bytes.empty()) throw ChildFailed(ending_of(status));
   const char kind = bytes.front();
   bytes.erase(0, 1);
   if (kind != kDone) throw Error(static_cast<ErrorKind>(kind), bytes);

@@ -12,6 +12,9 @@ class ChildFailed : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// How a process came to its end, by its status of waitpid: "crashed (Segmentation fault)", "ended with code 3".
+std::string ending_of(int status);
+
 /// What `work` returns, computed in a copy of this process that ends with it: nothing else that it changes is seen
 /// here, what it prints is dropped. Where no process can be started, it is computed in this one.
 /// `processor_seconds`: after so much work the child is stopped [s].

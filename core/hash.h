@@ -1,6 +1,9 @@
 #pragma once
 /// Short names for long texts.
 #include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
 #include <string>
 #include <string_view>
 
@@ -13,6 +16,14 @@ class Hash {
     for (const char c : bytes) value_ = (value_ ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
   }
   void add(double number) { add({reinterpret_cast<const char*>(&number), sizeof number}); }
+
+  /// What the file holds; nothing where there is none.
+  void add_file(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    std::ostringstream text;
+    text << in.rdbuf();
+    add(text.view());
+  }
 
   std::uint64_t value() const { return value_; }
   /// Sixteen hexadecimal digits.

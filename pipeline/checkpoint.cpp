@@ -8,7 +8,7 @@
 #include "core/hash.h"
 #include "output/atomic_file.h"
 #include "pipeline/detail/archive.h"
-#include "sunder_version.h"
+#include "pipeline/version.h"
 
 namespace sunder::pipeline {
 namespace {
@@ -16,14 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::string magic = "sunder checkpoint 1\n";
-const std::string build = std::string(SUNDER_VERSION) + " (" + SUNDER_GIT + ")";
-
-void add_file(Hash& hash, const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  hash.add(text.str());
-}
+const std::string build = build_name();
 
 std::string hash_of(std::string_view bytes) {
   Hash hash;
@@ -49,13 +42,13 @@ void serialize(Archive& archive, Header& header) {
 
 std::string fingerprint(const Scene& scene) {
   Hash hash;
-  add_file(hash, scene.file);
+  hash.add_file(scene.file);
   for (const Override& change : scene.overrides) hash.add(change.key + " = " + change.value);
-  add_file(hash, default_assets().materials);
-  add_file(hash, default_assets().meshes);
+  hash.add_file(default_assets().materials);
+  hash.add_file(default_assets().meshes);
   std::set<fs::path> meshes;
   for (const SceneBody& body : scene.bodies) meshes.insert(body.mesh.file);
-  for (const fs::path& mesh : meshes) add_file(hash, mesh);
+  for (const fs::path& mesh : meshes) hash.add_file(mesh);
   for (const double number : {scene.duration, scene.frame_rate}) hash.add(number);
   hash.add(scene.time_budget ? "within " + std::to_string(*scene.time_budget) : name_of(scene.quality));
   for (const auto& frame : {scene.outputs.first_frame, scene.outputs.last_frame})

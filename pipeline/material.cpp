@@ -1,6 +1,7 @@
 #include "pipeline/material.h"
 
 #include <array>
+#include <cmath>
 
 #include "crack/surface_detail.h"
 #include "pipeline/detail/material_keys.h"
@@ -73,6 +74,10 @@ MaterialLibrary load_materials(const std::filesystem::path& file) {
     library.emplace(name, material);
   }
   return library;
+}
+
+double crack_through_energy(const Material& material, double volume) {
+  return material.fracture_energy * std::pow(volume, 2.0 / 3);
 }
 
 }  // namespace sunder::pipeline

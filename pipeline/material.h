@@ -22,6 +22,9 @@ struct Material {
   std::string surface_look = {};  ///< of its crack faces (crack::detail_preset); empty: none of its own
 };
 
+/// What one crack right through a body of the volume [m^3] takes at least: fracture_energy times volume^(2/3) [J].
+double crack_through_energy(const Material& material, double volume);
+
 using MaterialLibrary = std::map<std::string, Material>;
 
 /// Reads the presets. Errors: ErrorKind::usage with file and line.

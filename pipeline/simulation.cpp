@@ -212,12 +212,12 @@ double Simulation::energy_of(rigid::BodyId id) const {
   return std::isinf(free_mass(id)) ? 0 : kinetic_energy({world_part(id)}, {world_.state(id).twist});
 }
 
-/// Not set in the scene: the impulse whose energy could just open one crack of area V^(2/3).
+/// Not set in the scene: the impulse whose energy could just open one crack through the body.
 double Simulation::minimum_impulse(const Live& live, double partner_mass) const {
   if (origin_of(live).minimum_impulse) return *origin_of(live).minimum_impulse;
   if (scene_.fracture.minimum_impulse) return *scene_.fracture.minimum_impulse;
   const output::Piece& piece = piece_of(live);
-  const double energy = origin_of(live).material.fracture_energy * std::pow(piece.volume, 2.0 / 3);
+  const double energy = crack_through_energy(origin_of(live).material, piece.volume);
   const double m = mpm::reduced_mass(piece.mass, partner_mass);
   return std::sqrt(2 * m * energy);
 }

@@ -281,7 +281,7 @@ StillBody load_still_body(const FractureOptions& options) {
 
 double breaking_impulse(double mass, double volume, const Material& material, double speed) {
   // p = sqrt(2 m E) with the reduced mass m = mass b / (mass + b) of the impactor's mass b = p / speed, solved for p.
-  const double energy = material.fracture_energy * std::pow(volume, 2.0 / 3);
+  const double energy = crack_through_energy(material, volume);
   return speed / 2 * (std::sqrt(mass * mass + 8 * energy * mass / (speed * speed)) - mass);
 }
 

@@ -65,7 +65,7 @@ struct StillResult {
 };
 
 /// The momentum [N s] of an impactor of this speed [m/s] whose collision with the body could just open one crack
-/// through it: of the reduced mass's kinetic energy fracture_energy * volume^(2/3), as the threshold of a scene.
+/// through it: the reduced mass's kinetic energy is crack_through_energy, as at the threshold of a scene.
 double breaking_impulse(double mass, double volume, const Material& material, double speed);
 
 /// fracture_mesh without files, of a body that is loaded: options' mesh, unit, axis, size and material are not read

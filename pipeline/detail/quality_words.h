@@ -1,5 +1,5 @@
 #pragma once
-/// How files name a quality.
+/// How files write a quality and a seed.
 #include <array>
 #include <limits>
 

@@ -1,14 +1,11 @@
 #include "pipeline/detail/scene_override.h"
 
-#include <sstream>
-
 namespace sunder::pipeline::detail {
 namespace {
 
 constexpr std::string_view value_key = "value";
 
-/// "body.cup.velocity": "body", "cup", "velocity". Names of bodies may hold points: what is between the first and the
-/// last one is one name.
+/// "body.cup.velocity": "body", "cup", "velocity". What is between the first and the last point is one name.
 std::vector<std::string> steps_of(const std::string& key) {
   const std::size_t first = key.find('.'), last = key.rfind('.');
   if (first == std::string::npos || first == 0 || last + 1 == key.size()) return {};

@@ -74,14 +74,12 @@ TEST_F(Batch, LeavesAResultForEveryJobAndAManifest) {
 
 TEST_F(Batch, AgainDoesNothingAndMoreDoesWhatIsNew) {
   ASSERT_EQ(run(write(shatters)).code, 0);
-  const auto before = fs::last_write_time(out() / "jobs");
   std::map<std::string, fs::file_time_type> times;
   for (const auto& entry : fs::recursive_directory_iterator(out() / "jobs"))
     if (entry.is_regular_file()) times[entry.path()] = entry.last_write_time();
   EXPECT_EQ(run(write("[job]\nmesh = \"block.obj\"\ncells = [2, 3, 4, 5]\nseed = [1, 2]\n")).code, 0);
   for (const auto& [file, time] : times) EXPECT_EQ(fs::last_write_time(file), time) << file;
   EXPECT_EQ(ask("SELECT count(*) FROM job WHERE outcome = 'broken'"), 8);
-  EXPECT_LE(before, fs::last_write_time(out() / "jobs"));
 }
 
 TEST_F(Batch, ABrokenMeshNeverStopsTheRest) {

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "batch/detail/parameters_json.h"
 #include "batch/manifest.h"
 #include "batch/plan.h"
 #include "batch/results.h"
@@ -31,12 +32,11 @@ inline void fabricate(const Plan& plan, const std::filesystem::path& out) {
     files.push_back({{"name", name}, {"bytes", 123456}, {"sha256", std::string(64, 'a')}});
   for (std::uint64_t i = 0; i < plan.size(); ++i) {
     const Job job = plan.job(i);
-    nlohmann::ordered_json parameters = nlohmann::ordered_json::object();
-    for (const Parameter& p : job.parameters) parameters[p.name] = nlohmann::ordered_json::parse(p.value);
-    const nlohmann::ordered_json result = {{"id", job.id},         {"build", "bench"},   {"parameters", parameters},
-                                           {"outcome", "broken"},  {"error", nullptr},   {"fragments", 8},
-                                           {"largest_share", 0.4}, {"crack_area", 0.02}, {"work", 3.5},
-                                           {"pieces", pieces},     {"files", files}};
+    const nlohmann::ordered_json result = {
+        {"id", job.id},         {"build", "bench"},   {"parameters", detail::parameters_json(job)},
+        {"outcome", "broken"},  {"error", nullptr},   {"fragments", 8},
+        {"largest_share", 0.4}, {"crack_area", 0.02}, {"work", 3.5},
+        {"pieces", pieces},     {"files", files}};
     std::filesystem::create_directories(results.folder(job.id));
     std::ofstream(results.folder(job.id) / "result.json") << result.dump(1);
     std::ofstream(results.folder(job.id) / "measured.json") << R"({"seconds":1.1,"processor_seconds":1.0,"host":"a"})";
