@@ -8,7 +8,7 @@
 #include "batch/detail/job_keys.h"
 #include "core/hash.h"
 #include "core/random.h"
-#include "pipeline/checkpoint.h"
+#include "pipeline/fingerprint.h"
 
 namespace sunder::batch {
 namespace {

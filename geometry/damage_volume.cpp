@@ -6,7 +6,6 @@
 
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
-#include <openvdb/tools/MeshToVolume.h>
 
 #include "core/error.h"
 #include "geometry/detail/vdb_mesh.h"
@@ -108,11 +107,8 @@ std::string damage_volume(const TriangleMesh& solid, const DamageSamples& sample
   const std::size_t count = samples.points.size();
   if (samples.damage.size() != count || samples.damage_time.size() != count || !(samples.spacing > 0))
     throw Error(ErrorKind::usage, "a damage volume needs damage and damage time for each point, and their spacing");
-  detail::initialize_openvdb();
   const Vec3 origin = bounds(solid).min();
-  const auto scale = openvdb::math::Transform::createLinearTransform(samples.spacing);  // distances in metres
-  const FloatGrid::Ptr surface = openvdb::tools::meshToVolume<FloatGrid>(
-      detail::VoxelMesh{solid, origin, samples.spacing}, *scale, detail::half_band, detail::half_band);
+  const FloatGrid::Ptr surface = detail::signed_distance(solid, {origin, samples.spacing}, samples.spacing);
   WeightedMean damage, damage_time;
   for (std::size_t p = 0; p < count; ++p) {
     const Vec3 index = (samples.points[p] - origin) / samples.spacing;

@@ -3,9 +3,13 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
+#include <ostream>
+#include <streambuf>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -41,16 +45,58 @@ TemporaryFile create_beside(const fs::path& file) {
   fail(file, EEXIST);
 }
 
-// 0, or the reason why not all bytes went out.
-int write_all(int descriptor, std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = write(descriptor, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return written < 0 ? errno : ENOSPC;
-    bytes.remove_prefix(static_cast<std::size_t>(written));
+/// The temporary file, which takes the place of the file or goes.
+class Replacement {
+ public:
+  explicit Replacement(const fs::path& file) : file_(file), temporary_(create_beside(file)) {}
+  Replacement(const Replacement&) = delete;
+  Replacement& operator=(const Replacement&) = delete;
+  ~Replacement() {
+    if (temporary_.descriptor >= 0) close(temporary_.descriptor);
+    if (!placed_) unlink(temporary_.path.c_str());
   }
-  return 0;
-}
+
+  void put(std::string_view bytes) {
+    while (!bytes.empty()) {
+      const ssize_t written = write(temporary_.descriptor, bytes.data(), bytes.size());
+      if (written < 0 && errno == EINTR) continue;
+      if (written <= 0) fail(file_, written < 0 ? errno : ENOSPC);
+      bytes.remove_prefix(static_cast<std::size_t>(written));
+    }
+  }
+
+  void take_place() {
+    // Some file systems report a full disk only here.
+    if (close(std::exchange(temporary_.descriptor, -1)) != 0) fail(file_, errno);
+    if (rename(temporary_.path.c_str(), file_.c_str()) != 0) fail(file_, errno);
+    placed_ = true;
+  }
+
+ private:
+  fs::path file_;
+  TemporaryFile temporary_;
+  bool placed_ = false;
+};
+
+class Sink : public std::streambuf {
+ public:
+  explicit Sink(Replacement& to) : to_(to), buffer_(1 << 16) { setp(buffer_.data(), buffer_.data() + buffer_.size()); }
+
+ private:
+  int_type overflow(int_type c) override {
+    sync();
+    return traits_type::eq_int_type(c, traits_type::eof()) ? traits_type::not_eof(c)
+                                                           : sputc(traits_type::to_char_type(c));
+  }
+  int sync() override {
+    to_.put({pbase(), static_cast<std::size_t>(pptr() - pbase())});
+    setp(buffer_.data(), buffer_.data() + buffer_.size());
+    return 0;
+  }
+
+  Replacement& to_;
+  std::vector<char> buffer_;
+};
 
 }  // namespace
 
@@ -65,14 +111,20 @@ void require_writable(const fs::path& folder) {
 }
 
 void write_atomically(const fs::path& file, std::string_view bytes) {
-  const TemporaryFile temporary = create_beside(file);
-  int reason = write_all(temporary.descriptor, bytes);
-  // Some file systems report a full disk only here.
-  if (close(temporary.descriptor) != 0 && reason == 0) reason = errno;
-  if (reason == 0 && rename(temporary.path.c_str(), file.c_str()) != 0) reason = errno;
-  if (reason == 0) return;
-  unlink(temporary.path.c_str());
-  fail(file, reason);
+  Replacement replacement(file);
+  replacement.put(bytes);
+  replacement.take_place();
+}
+
+void write_atomically(const fs::path& file, const std::function<void(std::ostream&)>& write) {
+  Replacement replacement(file);
+  Sink sink(replacement);
+  std::ostream out(&sink);
+  // What put() throws shall not end as a bit of the stream's state.
+  out.exceptions(std::ios::badbit);
+  write(out);
+  out.flush();
+  replacement.take_place();
 }
 
 void remove_abandoned(const fs::path& folder) {

@@ -1,7 +1,6 @@
 #include "pipeline/checkpoint.h"
 
 #include <fstream>
-#include <set>
 #include <sstream>
 
 #include "core/error.h"
@@ -15,61 +14,74 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string magic = "sunder checkpoint 1\n";
+const std::string magic = "sunder checkpoint 2\n";
 const std::string build = build_name();
 
-std::string hash_of(std::string_view bytes) {
+/// Digits of the hash of all before them end the file.
+constexpr std::size_t digits_size = 16;
+
+std::string digits_of(std::string_view bytes) {
   Hash hash;
   hash.add(bytes);
   return hash.digits();
 }
 
+/// Hands on what it is given.
+class HashingBuffer : public std::streambuf {
+ public:
+  explicit HashingBuffer(std::streambuf& to) : to_(to) {}
+  std::string digits() const { return hash_.digits(); }
+
+ private:
+  std::streamsize xsputn(const char* bytes, std::streamsize size) override {
+    hash_.add({bytes, static_cast<std::size_t>(size)});
+    return to_.sputn(bytes, size);
+  }
+  int_type overflow(int_type c) override {
+    const char byte = traits_type::to_char_type(c);
+    return xsputn(&byte, 1) == 1 ? c : traits_type::eof();
+  }
+
+  std::streambuf& to_;
+  Hash hash_;
+};
+
 [[noreturn]] void damaged(const fs::path& file, const std::string& what) {
   throw Error(ErrorKind::io, file.string() + ": " + what + "; run without --resume to start again");
 }
 
+bool is_whole(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream all(std::ios::binary);
+  all << in.rdbuf();
+  const std::string_view bytes = all.view();
+  if (bytes.size() < digits_size) return false;
+  const std::size_t end = bytes.size() - digits_size;
+  return bytes.substr(end) == digits_of(bytes.substr(0, end));
+}
+
 /// What stands before the state.
 struct Header {
-  std::string build, scene, state_hash;
+  std::string build, scene;
 };
 
 template <class Archive>
 void serialize(Archive& archive, Header& header) {
-  archive(header.build, header.scene, header.state_hash);
+  archive(header.build, header.scene);
 }
 
 }  // namespace
 
-std::string fingerprint(const Scene& scene) {
-  Hash hash;
-  hash.add_file(scene.file);
-  for (const Override& change : scene.overrides) hash.add(change.key + " = " + change.value);
-  hash.add_file(default_assets().materials);
-  hash.add_file(default_assets().meshes);
-  std::set<fs::path> meshes;
-  for (const SceneBody& body : scene.bodies) meshes.insert(body.mesh.file);
-  for (const fs::path& mesh : meshes) hash.add_file(mesh);
-  for (const double number : {scene.duration, scene.frame_rate}) hash.add(number);
-  hash.add(scene.time_budget ? "within " + std::to_string(*scene.time_budget) : name_of(scene.quality));
-  for (const auto& frame : {scene.outputs.first_frame, scene.outputs.last_frame})
-    hash.add(frame ? std::to_string(*frame) : "all");
-  hash.add(std::to_string(scene.seed));
-  return hash.digits();
-}
-
 void write_checkpoint(const fs::path& file, const std::string& scene_fingerprint, int steps,
                       const Simulation& simulation) {
-  std::ostringstream state(std::ios::binary);
-  {
-    cereal::BinaryOutputArchive archive(state);
-    archive(steps, simulation.world_state(), simulation.state());
-  }
-  std::ostringstream out(std::ios::binary);
-  out << magic;
-  cereal::BinaryOutputArchive header(out);
-  header(Header{build, scene_fingerprint, hash_of(state.view())});
-  out << state.view();
-  output::write_atomically(file, out.view());
+  output::write_atomically(file, [&](std::ostream& out) {
+    HashingBuffer hashed(*out.rdbuf());
+    std::ostream body(&hashed);
+    body << magic;
+    cereal::BinaryOutputArchive archive(body);
+    archive(Header{build, scene_fingerprint}, steps, simulation.world_state(), simulation.state());
+    out << hashed.digits();
+  });
 }
 
 std::optional<Checkpoint> read_checkpoint(const fs::path& file, const std::string& scene_fingerprint) {
@@ -78,10 +90,11 @@ std::optional<Checkpoint> read_checkpoint(const fs::path& file, const std::strin
   std::string first(magic.size(), '\0');
   if (!in.read(first.data(), static_cast<std::streamsize>(first.size())) || first != magic)
     damaged(file, "not a checkpoint of this version");
+  if (!is_whole(file)) damaged(file, "the checkpoint is damaged");
   try {
     Header header;
-    cereal::BinaryInputArchive head(in);
-    head(header);
+    cereal::BinaryInputArchive archive(in);
+    archive(header);
     if (header.build != build)
       throw Error(ErrorKind::usage, file.string() + ": the checkpoint is of build " + header.build + ", this is " +
                                         build + "; resume with that one, or run without --resume to start again");
@@ -89,11 +102,6 @@ std::optional<Checkpoint> read_checkpoint(const fs::path& file, const std::strin
       throw Error(ErrorKind::usage, file.string() +
                                         ": the checkpoint is of another scene, or the scene, a mesh, the seed or the "
                                         "quality has changed since; run without --resume to start again");
-    std::ostringstream rest(std::ios::binary);
-    rest << in.rdbuf();
-    if (hash_of(rest.view()) != header.state_hash) damaged(file, "the checkpoint is damaged");
-    std::istringstream state(rest.str(), std::ios::binary);
-    cereal::BinaryInputArchive archive(state);
     Checkpoint checkpoint;
     archive(checkpoint.steps, checkpoint.world, checkpoint.simulation);
     return checkpoint;

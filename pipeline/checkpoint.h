@@ -15,10 +15,6 @@ struct Checkpoint {
   SimulationState simulation;
 };
 
-/// All that decides what a run gives: the scene file, the presets, the mesh files, and what the command line changed.
-/// 16 hexadecimal digits (FNV-1a).
-std::string fingerprint(const Scene& scene);
-
 /// Replaces the file in one go: whoever reads it finds the old checkpoint or the new one, whole. Errors: ErrorKind::io.
 void write_checkpoint(const std::filesystem::path& file, const std::string& scene_fingerprint, int steps,
                       const Simulation& simulation);

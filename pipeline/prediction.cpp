@@ -127,10 +127,20 @@ void Forecaster::sum_up(Simulation& pilot, long steps) {
   particles_ *= rest;
   particle_steps_ *= rest;
   for (const output::Piece& piece : pilot.sequence().pieces) {
-    const double faces = static_cast<double>(piece.mesh.faces.size());
-    all_faces_ += faces;
-    if (std::isinf(piece.death_time)) faces_ += faces;
+    ever_.add(piece);
+    if (std::isinf(piece.death_time)) last_.add(piece);
   }
+}
+
+void Forecaster::Faces::add(const output::Piece& piece) {
+  const auto cracks = std::count(piece.source_face.begin(), piece.source_face.end(), -1);
+  outside += static_cast<double>(piece.mesh.faces.size()) - static_cast<double>(cracks);
+  on_cracks += static_cast<double>(cracks);
+}
+
+/// Edges on cracks are as long as particles are apart.
+double Forecaster::Faces::at(const Quality& quality) const {
+  return outside + on_cracks * std::pow(quality.particles / static_cast<double>(pilot_quality.particles), 2.0 / 3);
 }
 
 /// A solve of r times the particles has steps that are r^(1/3) times as short.
@@ -144,9 +154,10 @@ double Forecaster::solve_seconds(const Quality& quality) const {
   return finer * (std::cbrt(finer) * particle_steps_ * step + particles_ * fitted::particle_break);
 }
 
-double Forecaster::write_seconds() const {
+double Forecaster::write_seconds(const Quality& quality) const {
   const int frames = last_frame(scene_) - scene_.start_frame + 1;
-  return (scene_.outputs.poster ? fitted::poster : 0) + (scene_.outputs.obj ? fitted::face_frame * faces_ * frames : 0);
+  return (scene_.outputs.poster ? fitted::poster : 0) +
+         (scene_.outputs.obj ? fitted::face_frame * last_.at(quality) * frames : 0);
 }
 
 Prediction Forecaster::at(const Quality& quality, int threads) const {
@@ -154,10 +165,11 @@ Prediction Forecaster::at(const Quality& quality, int threads) const {
   p.solves = solves_;
   const double pieces = solves_ > 0 ? fitted::finer_pieces : 1;
   const double rigid = rigid_seconds_ * pieces * quality.rigid_rate / pilot_quality.rigid_rate;
-  p.processor_seconds = slowness_ * (fitted::start + solve_seconds(quality) + write_seconds()) + setup_seconds_ + rigid;
+  p.processor_seconds =
+      slowness_ * (fitted::start + solve_seconds(quality) + write_seconds(quality)) + setup_seconds_ + rigid;
   p.seconds = p.processor_seconds * (fitted::serial_share + (1 - fitted::serial_share) / threads_of(threads));
-  p.memory_mb =
-      fitted::program_mb + fitted::face_mb * all_faces_ + (solves_ > 0 ? fitted::particle_mb * quality.particles : 0);
+  p.memory_mb = fitted::program_mb + fitted::face_mb * ever_.at(quality) +
+                (solves_ > 0 ? fitted::particle_mb * quality.particles : 0);
   return p;
 }
 

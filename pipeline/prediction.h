@@ -33,10 +33,17 @@ class Forecaster {
   double slowness() const { return slowness_; }  ///< measured_slowness() when it was made
 
  private:
+  /// Outside ones are those of the bodies, of whatever quality.
+  struct Faces {
+    double outside = 0, on_cracks = 0;
+    void add(const output::Piece& piece);
+    double at(const Quality& quality) const;
+  };
+
   double follow(Simulation& pilot, Progress& progress);
   void sum_up(Simulation& pilot, long steps);
   double solve_seconds(const Quality& quality) const;
-  double write_seconds() const;
+  double write_seconds(const Quality& quality) const;
 
   const Scene& scene_;
   double setup_seconds_, slowness_;
@@ -44,7 +51,7 @@ class Forecaster {
   // Of the whole scene at the pilot's quality.
   double rigid_seconds_ = 0;
   double particles_ = 0, particle_steps_ = 0;  ///< of all solves
-  double faces_ = 0, all_faces_ = 0;           ///< of the pieces at the end, and of all that there ever were
+  Faces last_, ever_;                          ///< of the pieces at the end, and of all that there ever were
   int solves_ = 0;
 };
 

@@ -77,7 +77,7 @@ struct Prediction {
 
 struct Report {
   std::string scene, quality;
-  std::string fingerprint;  ///< of all that decides the results (pipeline/checkpoint.h)
+  std::string fingerprint;  ///< of all that decides the results (pipeline/fingerprint.h)
   std::uint64_t seed = 0;
   int threads = 0;
   bool interrupted = false;

@@ -10,6 +10,7 @@
 #include "core/stopwatch.h"
 #include "output/atomic_file.h"
 #include "pipeline/checkpoint.h"
+#include "pipeline/fingerprint.h"
 #include "pipeline/outputs.h"
 #include "pipeline/prediction.h"
 #include "pipeline/report_page.h"

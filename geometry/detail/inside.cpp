@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "geometry/detail/cgal_mesh.h"
 
@@ -9,6 +10,8 @@ namespace sunder::geometry::detail {
 namespace {
 
 constexpr double kFacesPerBin = 2;
+constexpr double kMostBins = 4096;
+constexpr double kFlat = kMostBins * std::numeric_limits<double>::min();  // thinner, and a bin's inverse is infinite
 
 using Point2 = Kernel::Point_2;
 
@@ -40,8 +43,8 @@ InsideTest::InsideTest(const TriangleMesh& mesh) : mesh_(mesh), box_(bounds(mesh
   const Vec3 size = box_.isEmpty() ? Vec3(Vec3::Zero()) : Vec3(box_.diagonal());
   const double width = std::sqrt(size.x() * size.y() * kFacesPerBin / std::max<double>(1, mesh.faces.size()));
   for (int axis = 0; axis < 2; ++axis) {
-    bins_[axis] = width > 0 ? std::clamp(static_cast<int>(size[axis] / width), 1, 4096) : 1;
-    per_length_[axis] = size[axis] > 0 ? bins_[axis] / size[axis] : 0;
+    bins_[axis] = width > 0 ? static_cast<int>(std::clamp(size[axis] / width, 1.0, kMostBins)) : 1;
+    per_length_[axis] = size[axis] > kFlat ? bins_[axis] / size[axis] : 0;
   }
   const auto for_each_bin = [&](int face, const auto& visit) {
     Box shadow;
@@ -60,7 +63,7 @@ InsideTest::InsideTest(const TriangleMesh& mesh) : mesh_(mesh), box_(bounds(mesh
 }
 
 int InsideTest::bin(int axis, double x) const {
-  return std::clamp(static_cast<int>((x - box_.min()[axis]) * per_length_[axis]), 0, bins_[axis] - 1);
+  return static_cast<int>(std::clamp((x - box_.min()[axis]) * per_length_[axis], 0.0, bins_[axis] - 1.0));
 }
 
 bool InsideTest::operator()(const Vec3& point) const {

@@ -1,7 +1,5 @@
 #include "geometry/detail/level_sets.h"
 
-#include <openvdb/tools/MeshToVolume.h>
-
 #include "geometry/detail/vdb_mesh.h"
 
 namespace sunder::geometry::detail {
@@ -11,6 +9,8 @@ openvdb::Coord coord(const Lattice& lattice, int index) {
   return {index % lattice.count[0], index / lattice.count[0] % lattice.count[1],
           index / lattice.count[0] / lattice.count[1]};
 }
+
+Voxels voxels_of(const Lattice& lattice) { return {lattice.origin, lattice.spacing}; }
 
 }  // namespace
 
@@ -22,9 +22,7 @@ struct BodyLevelSet::Grids {
 BodyLevelSet::BodyLevelSet(const TriangleMesh& body, const Lattice& lattice)
     : lattice_(lattice), grids_(std::make_unique<Grids>()) {
   initialize_openvdb();
-  const auto unit = openvdb::math::Transform::createLinearTransform(1.0);
-  grids_->distance = openvdb::tools::meshToVolume<openvdb::FloatGrid>(
-      VoxelMesh{body, lattice_.origin, lattice_.spacing}, *unit, half_band, half_band, 0, &grids_->face);
+  grids_->distance = signed_distance(body, voxels_of(lattice_), 1, &grids_->face);
 }
 
 BodyLevelSet::~BodyLevelSet() = default;
@@ -38,13 +36,8 @@ std::vector<char> BodyLevelSet::near_or_inside() const {
 
 TriangleMesh BodyLevelSet::part_inside(const std::vector<int>& region_of_point, int region,
                                        const TriangleMesh& walls) const {
-  const auto unit = openvdb::math::Transform::createLinearTransform(1.0);
-  openvdb::FloatGrid::Ptr from_walls = openvdb::FloatGrid::create(half_band);
-  if (!walls.faces.empty()) {
-    from_walls =
-        openvdb::tools::meshToVolume<openvdb::FloatGrid>(VoxelMesh{walls, lattice_.origin, lattice_.spacing}, *unit,
-                                                         half_band, half_band, openvdb::tools::UNSIGNED_DISTANCE_FIELD);
-  }
+  const openvdb::FloatGrid::Ptr from_walls =
+      walls.faces.empty() ? openvdb::FloatGrid::create(half_band) : unsigned_distance(walls, voxels_of(lattice_));
   const auto part = openvdb::FloatGrid::create(half_band);
   part->setGridClass(openvdb::GRID_LEVEL_SET);  // decides which way faces turn
   auto body = grids_->distance->getConstAccessor();
@@ -57,7 +50,7 @@ TriangleMesh BodyLevelSet::part_inside(const std::vector<int>& region_of_point, 
     const float value = std::max(body.getValue(at), region_of_point[i] == region ? -to_wall : to_wall);
     if (value < half_band) out.setValue(at, value);
   }
-  return surface_of(*part, lattice_.origin, lattice_.spacing);
+  return surface_of(*part, voxels_of(lattice_));
 }
 
 int BodyLevelSet::face_within_a_voxel(const Vec3& point) const {

@@ -107,7 +107,6 @@ Shells shells_that_cross(const TriangleMesh& mesh, const FacePairs& pairs) {
   return shells;
 }
 
-// False when CGAL cannot represent the union as a manifold surface.
 // Whether two shells have an edge's ends in common.
 bool share_an_edge(const SurfaceMesh& a, const SurfaceMesh& b) {
   std::set<Kernel::Point_3> points;
@@ -117,6 +116,7 @@ bool share_an_edge(const SurfaceMesh& a, const SurfaceMesh& b) {
   return shared >= 2;
 }
 
+// False when CGAL cannot represent the union as a manifold surface.
 bool unite_groups(Shells& shells) {
   // On anything else corefinement may never end, and neither does it on some shells that share edges.
   const auto is_volume = [](const SurfaceMesh& shell) {

@@ -11,22 +11,22 @@ constexpr float half_band = 3;  ///< half width of narrow bands in voxels
 /// Has to come before anything else of OpenVDB; any number of times.
 void initialize_openvdb();
 
-/// A mesh in voxels, in the form that OpenVDB reads.
-struct VoxelMesh {
-  const TriangleMesh& mesh;
-  Vec3 origin;   ///< of the voxels [m]
-  double voxel;  ///< [m]
-
-  std::size_t polygonCount() const { return mesh.faces.size(); }
-  std::size_t pointCount() const { return mesh.vertices.size(); }
-  std::size_t vertexCount(std::size_t) const { return 3; }
-  void getIndexSpacePoint(std::size_t face, std::size_t corner, openvdb::Vec3d& point) const {
-    const Vec3 x = (mesh.vertices[mesh.faces[face][corner]] - origin) / voxel;
-    point = {x.x(), x.y(), x.z()};
-  }
+/// Where the voxels of a grid lie.
+struct Voxels {
+  Vec3 origin;  ///< centre of voxel (0, 0, 0) [m]
+  double size;  ///< [m]
 };
 
+/// Distance to a closed mesh, negative inside, in a band of half_band voxels on either side; in units of which a voxel
+/// has `voxel_length`. With `nearest`, also which face is nearest. Takes the corners as floats of voxels: 1e-4 voxels
+/// off, a thousand voxels from the origin.
+openvdb::FloatGrid::Ptr signed_distance(const TriangleMesh& mesh, const Voxels& voxels, double voxel_length = 1,
+                                        openvdb::Int32Grid* nearest = nullptr);
+
+/// The same in voxels and without a sign, of a mesh that need not be closed.
+openvdb::FloatGrid::Ptr unsigned_distance(const TriangleMesh& mesh, const Voxels& voxels);
+
 /// The zero surface of a level set (dual contouring on a uniform grid), faces outward.
-TriangleMesh surface_of(const openvdb::FloatGrid& grid, const Vec3& origin, double voxel);
+TriangleMesh surface_of(const openvdb::FloatGrid& grid, const Voxels& voxels);
 
 }  // namespace sunder::geometry::detail

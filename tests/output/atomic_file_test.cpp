@@ -45,6 +45,41 @@ TEST(AtomicFile, FullDiskLeavesTheOldFile) {
   EXPECT_EQ(folder.file_count(), 1u) << "the temporary file is still there";
 }
 
+TEST(AtomicFile, WhatIsStreamedIsWritten) {
+  const ScratchFolder folder;
+  std::string bytes;
+  for (int i = 0; i < 60'000; ++i) bytes.append(std::to_string(i)).append(1, '\0');
+  write_atomically(folder / "file", [&](std::ostream& out) {
+    for (std::size_t at = 0, size = 1; at < bytes.size(); at += size, size = (7 * size + 1) % 5000 + 1)
+      out << std::string_view(bytes).substr(at, size);
+  });
+  EXPECT_EQ(read_all(folder / "file"), bytes);
+  EXPECT_EQ(folder.file_count(), 1u);
+}
+
+TEST(AtomicFile, AStreamThatFailsLeavesTheOldFile) {
+  const ScratchFolder folder;
+  write_atomically(folder / "file", "old");
+  EXPECT_THROW(write_atomically(folder / "file",
+                                [](std::ostream& out) {
+                                  out << "new";
+                                  throw std::runtime_error("no more");
+                                }),
+               std::runtime_error);
+  std::string message;
+  {
+    const FileSizeLimit limit(50'000);
+    try {
+      write_atomically(folder / "file", [](std::ostream& out) { out << std::string(200'000, 'x'); });
+    } catch (const Error& error) {
+      message = error.what();
+    }
+  }
+  EXPECT_NE(message.find("File too large"), std::string::npos) << message;
+  EXPECT_EQ(read_all(folder / "file"), "old");
+  EXPECT_EQ(folder.file_count(), 1u);
+}
+
 TEST(AtomicFile, MissingFolderIsNamed) {
   const ScratchFolder folder;
   const std::string message = complaint(folder / "nowhere" / "file", "text");

@@ -11,6 +11,7 @@
 #include <sys/wait.h>
 
 #include "core/random.h"
+#include "pipeline/fingerprint.h"
 #include "pipeline/run.h"
 #include "tests/output/scratch_folder.h"
 
@@ -164,11 +165,15 @@ TEST_F(CheckpointTest, DamagedCheckpointsAreRefused) {
   go("out", soon);
   const fs::path file = folder_ / "out" / "checkpoint.bin";
   const std::string good = output::read_all(file);
-  // Cut short, emptied, and with one wrong byte at ten places.
+  // Cut short, emptied, and with one wrong byte at ten places and wherever lengths stand at the beginning.
   std::vector<std::string> bad = {good.substr(0, good.size() / 2), good.substr(0, 30), "", "no checkpoint at all"};
   for (std::uint64_t i = 0; i < 10; ++i) {
     bad.push_back(good);
     bad.back()[static_cast<std::size_t>(random_unit(2, 0, i) * static_cast<double>(good.size()))] ^= 1;
+  }
+  for (std::size_t i = 0; i < 64; ++i) {
+    bad.push_back(good);
+    bad.back()[i] ^= 0x40;
   }
   for (const std::string& bytes : bad) {
     std::ofstream(file, std::ios::binary) << bytes;
