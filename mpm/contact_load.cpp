@@ -1,5 +1,6 @@
 #include "mpm/contact_load.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -31,44 +32,16 @@ ContactLoad::ContactLoad(const Load& load, double body_mass, const Partner& part
       model_(settings.load),
       patch_(body, load.point, load.outward, settings.smallest_patch * body.cell_size()) {
   // The patch of the solve already gives way by about 0.6 chi F / (E* a), chi the body's share of E*: the contact law
-  // adds it back.
+  // adds it back. That is 0.8 chi a_h / a of the elastic indentation, a_h the radius of the contact.
   const double share =
       load.pair.effective_modulus * (1 - material.poisson_ratio * material.poisson_ratio) / material.youngs_modulus;
   patch_compliance_ = 0.6 * share / load.pair.effective_modulus;
+  widest_contact_ = std::min(1.1, HertzContact::most_given_back / (0.8 * share));
   const double m = reduced_mass(body_mass, partner.mass);
   prescribed_duration_ = hertz_duration(m, load.approach_speed, load.pair);
   // The mean of sin^1.5 over half a period; the impulse is that of an elastic rigid impact, 2 m v.
   const double mean = std::beta(1.25, 0.5) / std::numbers::pi;
   prescribed_peak_ = 2 * m * load.approach_speed / (prescribed_duration_ * mean);
-}
-
-/// The indentation d that the contact law sees is the approach and what the patch has already given way:
-/// d = approach + min(c F(d), 0.8 d_elastic(F(d))). The right side grows slower than d, and d_elastic <= d, so the one
-/// root lies in [approach, 5 approach]; it is closed in on from both sides.
-double ContactLoad::contact_force(double approach) {
-  if (approach <= 0) return 0;
-  const double compliance = patch_compliance_ / patch_.radius();
-  const auto excess = [&](double d) {
-    const double f = contact_.force(d);
-    return approach + std::min(compliance * f, 0.8 * contact_.elastic_indentation(f)) - d;
-  };
-  double low = approach, high = 5 * approach, at_low = excess(low), at_high = excess(high);
-  for (int turn = 0; turn < 60 && high - low > 1e-13 * high && at_low > 0; ++turn) {
-    double middle = (low * at_high - high * at_low) / (at_high - at_low);
-    if (!(middle > low && middle < high)) middle = 0.5 * (low + high);
-    const double at = excess(middle);
-    // Illinois: an end that stays twice counts half.
-    if (at > 0) {
-      low = middle;
-      at_low = at;
-      at_high *= 0.5;
-    } else {
-      high = middle;
-      at_high = at;
-      at_low *= 0.5;
-    }
-  }
-  return contact_.load(low);
 }
 
 double ContactLoad::evaluate(const Continuum& body, const Vec3& partner_displacement, double time, double time_step) {
@@ -77,7 +50,8 @@ double ContactLoad::evaluate(const Continuum& body, const Vec3& partner_displace
   const double partner = load_.approach_speed * time - partner_displacement.dot(load_.outward);
   double force = 0;
   if (model_ == LoadModel::contact) {
-    force = contact_force(partner - indentation - gap_);
+    const double approach = partner - indentation - gap_;
+    force = contact_.load_through_patch(approach, patch_compliance_ / patch_.radius());
   } else if (const double middle = time + 0.5 * time_step; middle < prescribed_duration_) {
     force = prescribed_peak_ * std::pow(std::sin(std::numbers::pi * middle / prescribed_duration_), 1.5);
   }
@@ -89,7 +63,7 @@ double ContactLoad::evaluate(const Continuum& body, const Vec3& partner_displace
     if (result_.first_time < 0) result_.first_time = time;
     result_.last_time = time + time_step;
     result_.peak_force = std::max(result_.peak_force, force);
-    if (contact_.patch_radius() > 1.1 * patch_.radius()) widen_patch(body);
+    if (contact_.patch_radius() > widest_contact_ * patch_.radius()) widen_patch(body);
   }
   return force;
 }
@@ -103,7 +77,8 @@ Vec3 ContactLoad::apply(double time_step, Continuum& body) {
 }
 
 void ContactLoad::widen_patch(const Continuum& body) {
-  patch_ = LoadedPatch(body, load_.point, load_.outward, contact_.patch_radius());
+  // Far enough that it does not come to that again at once.
+  patch_ = LoadedPatch(body, load_.point, load_.outward, 1.1 / widest_contact_ * contact_.patch_radius());
   attached_ = patch_.drop_escaped(body);
   const double indentation = attached_ ? patch_.indentation(body) : 0;
   gap_ += indentation_ - indentation;

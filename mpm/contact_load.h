@@ -34,13 +34,13 @@ class ContactLoad {
   const Load& load() const { return load_; }
 
  private:
-  double contact_force(double approach);
   void widen_patch(const Continuum& body);
 
   Load load_;
   HertzContact contact_;
   LoadModel model_;
-  double patch_compliance_;
+  double patch_compliance_;  ///< times the radius of the patch [m^2/N]
+  double widest_contact_;    ///< in radii of the patch, before it is widened
   double prescribed_peak_ = 0, prescribed_duration_ = 0;
   LoadedPatch patch_;
   bool attached_ = true;

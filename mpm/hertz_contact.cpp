@@ -1,5 +1,6 @@
 #include "mpm/hertz_contact.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -55,6 +56,34 @@ double HertzContact::load(double d) {
   unloading_radius_ = 4 * pair_.effective_modulus * patch_radius_ * patch_radius_ * patch_radius_ / (3 * f);
   residual_ = d - elastic_indentation(f);
   return f;
+}
+
+// The indentation d = approach + min(c F(d), 0.6 d_elastic(F(d))). Where the first is the smaller one it grows by less
+// than 1.5 * 0.6 d, the second by at most 0.6 d, and d_elastic <= d: the one root lies in [approach, 2.5 approach], and
+// is closed in on from both sides.
+double HertzContact::load_through_patch(double approach, double patch_compliance) {
+  if (approach <= 0) return 0;
+  const auto excess = [&](double d) {
+    const double f = force(d);
+    return approach + std::min(patch_compliance * f, most_given_back * elastic_indentation(f)) - d;
+  };
+  double low = approach, high = approach / (1 - most_given_back), at_low = excess(low), at_high = excess(high);
+  for (int turn = 0; turn < 60 && high - low > 1e-13 * high && at_low > 0; ++turn) {
+    double middle = (low * at_high - high * at_low) / (at_high - at_low);
+    if (!(middle > low && middle < high)) middle = 0.5 * (low + high);
+    const double at = excess(middle);
+    // Illinois: an end that stays twice counts half.
+    if (at > 0) {
+      low = middle;
+      at_low = at;
+      at_high *= 0.5;
+    } else {
+      high = middle;
+      at_high = at;
+      at_low *= 0.5;
+    }
+  }
+  return load(low);
 }
 
 }  // namespace sunder::mpm

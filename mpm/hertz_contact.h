@@ -36,6 +36,13 @@ class HertzContact {
   double force(double indentation) const;
   /// The same, and the contact remembers that it was there.
   double load(double indentation);
+  /// The same for an `approach` of bodies one of which gives way by `patch_compliance` [m/N] in a model of its own: to
+  /// be the contact's whole indentation the approach lacks that part of it, of which at most `most_given_back` elastic
+  /// indentations are added. With that bound there is one indentation, and the force is a continuous function of the
+  /// approach.
+  double load_through_patch(double approach, double patch_compliance);
+  static constexpr double most_given_back = 0.6;  // below 2/3: Hertz grows with d^1.5
+
   /// Radius of the contact patch at the deepest indentation so far [m].
   double patch_radius() const { return patch_radius_; }
   /// Elastic part of the indentation that carries `force` [m].

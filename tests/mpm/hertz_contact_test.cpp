@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
 
 #include "mpm/contact_load.h"
 
@@ -81,6 +82,36 @@ TEST(HertzContact, ReboundIsElasticWithoutCrushingAndSlowerWithIt) {
     EXPECT_GT(restitution, 0.1);
     EXPECT_LT(restitution, before);
     before = restitution;
+  }
+}
+
+// Where a patch gave way by more than two thirds of the indentation the equation had a fold: a force that doubled from
+// one step to the next.
+RC_GTEST_PROP(HertzContact, TheForceThroughAPatchIsContinuous, ()) {
+  const auto log_real = [](double low, double high) {
+    return low * std::pow(high / low, *rc::gen::inRange(0, 1001) * 1e-3);
+  };
+  const ContactPair pair{log_real(1e-3, 1), log_real(1e9, 1e11), log_real(1e7, 1e12)};
+  const double most = log_real(1e-5, 1e-2) * pair.effective_radius;
+  // From a patch that is wide to one that is narrow beside the contact.
+  const double compliance =
+      log_real(0.03, 3) * 0.6 / (pair.effective_modulus * std::sqrt(pair.effective_radius * most));
+  // Relative, of a step of a thousandth: forces grow with d^1.5, and d by at most ten times the approach.
+  constexpr double step = 1e-3, bound = 1.5 * 10 * step;
+  HertzContact contact(pair);
+  double approach = 0.01 * most, force = contact.load_through_patch(approach, compliance);
+  for (; approach < most; approach *= 1 + step) {
+    const double next = contact.load_through_patch(approach, compliance);
+    RC_ASSERT(next >= force * (1 - 1e-9));
+    RC_ASSERT(next <= force * (1 + 1.01 * bound));
+    force = next;
+  }
+  const double largest = force, give = contact.elastic_indentation(force);
+  for (approach /= 1 + step; force > 0; approach -= step * give) {
+    const double next = contact.load_through_patch(approach, compliance);
+    RC_ASSERT(next <= force + 1e-9 * largest);
+    RC_ASSERT(force - next <= 1.01 * bound * largest);
+    force = next;
   }
 }
 
