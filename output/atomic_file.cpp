@@ -83,6 +83,12 @@ class Sink : public std::streambuf {
   explicit Sink(Replacement& to) : to_(to), buffer_(1 << 16) { setp(buffer_.data(), buffer_.data() + buffer_.size()); }
 
  private:
+  std::streamsize xsputn(const char* bytes, std::streamsize size) override {
+    if (size < epptr() - pptr()) return std::streambuf::xsputn(bytes, size);
+    sync();
+    to_.put({bytes, static_cast<std::size_t>(size)});
+    return size;
+  }
   int_type overflow(int_type c) override {
     sync();
     return traits_type::eq_int_type(c, traits_type::eof()) ? traits_type::not_eof(c)

@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <ostream>
 #include <string>
 
 #include <tbb/parallel_for.h>
@@ -162,21 +163,17 @@ void ObjFrames::write(const Sequence& sequence, std::size_t number, const std::f
     append_posed(kept.posed, sequence.pieces[id], kept.groups, frame.poses[k].pose);
     kept.number_from(first[k]);
   });
-  write_atomically(
-      dir / (sequence.name + "." + frame_number(sequence.start_frame + static_cast<long>(number)) + ".obj"),
-      text(sequence, frame));
-}
-
-const std::string& ObjFrames::text(const Sequence& sequence, const Frame& frame) {
-  TextBuffer head;
-  head << "# " << sequence.name << ", " << frame.time << " s; metres, Y up\n";
-  head << "mtllib " << sequence.name << ".mtl\ns off\n";
-  text_ = head.text();
-  for (const PiecePose& pose : frame.poses) {
-    const Kept& kept = *kept_[static_cast<std::size_t>(pose.piece)];
-    text_.append(kept.posed.text()).append(kept.texture.text()).append(kept.faces.text());
-  }
-  return text_;
+  const std::string name = sequence.name + "." + frame_number(sequence.start_frame + static_cast<long>(number));
+  write_atomically(dir / (name + ".obj"), [&](std::ostream& out) {
+    TextBuffer head;
+    head << "# " << sequence.name << ", " << frame.time << " s; metres, Y up\n";
+    head << "mtllib " << sequence.name << ".mtl\ns off\n";
+    out << head.text();
+    for (const PiecePose& pose : frame.poses) {
+      const Kept& kept = *kept_[static_cast<std::size_t>(pose.piece)];
+      out << kept.posed.text() << kept.texture.text() << kept.faces.text();
+    }
+  });
 }
 
 }  // namespace sunder::output

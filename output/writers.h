@@ -29,10 +29,7 @@ class ObjFrames {
 
  private:
   struct Kept;
-  const std::string& text(const Sequence& sequence, const Frame& frame);
-
   std::vector<std::unique_ptr<Kept>> kept_;  ///< by piece, of those that the last frame shows
-  std::string text_;
 };
 
 /// dir/<name>.mtl with the materials of all pieces so far.

@@ -28,6 +28,7 @@ constexpr double serial_share = 0.2;     ///< of the processor time: one thread 
 constexpr double program_mb = 125;
 constexpr double particle_mb = 2.5e-3;  ///< of a solve
 constexpr double face_mb = 3e-4;
+constexpr double fragment_mb = 0.3;  ///< of its contacts with those that were one with it
 }  // namespace fitted
 
 /// The machine that the constants are of took so long for the solve below [s].
@@ -128,6 +129,7 @@ void Forecaster::sum_up(Simulation& pilot, long steps) {
   particle_steps_ *= rest;
   for (const output::Piece& piece : pilot.sequence().pieces) {
     ever_.add(piece);
+    if (piece.parent >= 0) ++fragments_;
     if (std::isinf(piece.death_time)) last_.add(piece);
   }
 }
@@ -168,8 +170,8 @@ Prediction Forecaster::at(const Quality& quality, int threads) const {
   p.processor_seconds =
       slowness_ * (fitted::start + solve_seconds(quality) + write_seconds(quality)) + setup_seconds_ + rigid;
   p.seconds = p.processor_seconds * (fitted::serial_share + (1 - fitted::serial_share) / threads_of(threads));
-  p.memory_mb = fitted::program_mb + fitted::face_mb * ever_.at(quality) +
-                (solves_ > 0 ? fitted::particle_mb * quality.particles : 0);
+  p.memory_mb = fitted::program_mb + fitted::face_mb * ever_.at(quality) + fitted::fragment_mb * pieces * fragments_;
+  if (solves_ > 0) p.memory_mb += fitted::particle_mb * quality.particles;
   return p;
 }
 

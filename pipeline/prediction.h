@@ -52,7 +52,7 @@ class Forecaster {
   double rigid_seconds_ = 0;
   double particles_ = 0, particle_steps_ = 0;  ///< of all solves
   Faces last_, ever_;                          ///< of the pieces at the end, and of all that there ever were
-  int solves_ = 0;
+  int solves_ = 0, fragments_ = 0;
 };
 
 /// The finest quality with which the scene takes at most its time_budget. Errors: those of Simulation.
