@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 constexpr const char* pane = R"([scene]
 duration = 0.3
 frame_rate = 60
-quality = "draft"
+quality = 1500
 [ground]
 [[body]]
 name = "pane"
