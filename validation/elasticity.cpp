@@ -319,7 +319,8 @@ Outcome crushing() {
   mpm::Load load;
   load.point = {0, 0.05, 0};
   load.approach_speed = 400;
-  load.pair = {0.02, mpm::effective_modulus(1e6, 0.3, 210e9, 0.3)};
+  // So small that deformations leave the range of the law, and what is done then is seen to work.
+  load.pair = {0.005, mpm::effective_modulus(1e6, 0.3, 210e9, 0.3)};
   SilentProgress progress;
   const auto r = mpm::solve(impact(lattice, material, load, 1), {}, progress);
   long broken = 0;
