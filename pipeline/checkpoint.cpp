@@ -20,12 +20,6 @@ const std::string build = build_name();
 /// Digits of the hash of all before them end the file.
 constexpr std::size_t digits_size = 16;
 
-std::string digits_of(std::string_view bytes) {
-  Hash hash;
-  hash.add(bytes);
-  return hash.digits();
-}
-
 /// Hands on what it is given.
 class HashingBuffer : public std::streambuf {
  public:
@@ -57,7 +51,9 @@ bool is_whole(const fs::path& file) {
   const std::string_view bytes = all.view();
   if (bytes.size() < digits_size) return false;
   const std::size_t end = bytes.size() - digits_size;
-  return bytes.substr(end) == digits_of(bytes.substr(0, end));
+  Hash hash;
+  hash.add(bytes.substr(0, end));
+  return bytes.substr(end) == hash.digits();
 }
 
 /// What stands before the state.
